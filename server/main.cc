@@ -85,16 +85,17 @@ void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer
 }
 
 // Ends the process after this time. Everything that was acknowledged is on disk by then.
-void ExitAfter(std::chrono::milliseconds limit) {
-  std::thread([limit] {
+void ExitAfter(std::chrono::milliseconds limit, const BallpistonServer& server) {
+  std::thread([limit, &server] {
     std::this_thread::sleep_for(limit);
+    server.LeaveDataFolder();
     std::_Exit(0);
   }).detach();
 }
 
 int Fail(const absl::Status& status) {
   std::fputs(LogLine(Severity::kError, status.message()).c_str(), stderr);
-  if (absl::IsUnavailable(status)) return kExitTryAgain;
+  if (absl::IsUnavailable(status) || absl::IsResourceExhausted(status)) return kExitTryAgain;
   return absl::IsPermissionDenied(status) ? kExitNotPermitted : kExitUsage;
 }
 
@@ -147,8 +148,9 @@ int Main(int argc, char** argv) {
   CountFailpointsOfReadyServer();
   LogInfo(absl::StrCat("version ", kVersion, " listening on ", (*server)->address()));
   AwaitEnd(signals, *line, **server);
-  ExitAfter(line->drain + kGrace);
+  ExitAfter(line->drain + kGrace, **server);
   (*server)->Shutdown(line->drain);
+  (*server)->LeaveDataFolder();
   // Skips the destructors: after large answers gRPC may wait 10 s for one of its threads.
   std::fflush(nullptr);
   std::_Exit(0);

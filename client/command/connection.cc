@@ -6,6 +6,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "client/command/verb_table.h"
@@ -60,13 +61,19 @@ std::string HintOfSocket(absl::string_view message) {
          "of a machine share a server at a loopback address, each with a token";
 }
 
+// The flag whose value the error of OpenChannel is about.
+absl::string_view FlagOf(absl::string_view error) {
+  if (absl::StartsWith(error, "the token file ")) return "--token-file";
+  return absl::StartsWith(error, "the authority file ") ? "--ca" : "--server";
+}
+
 absl::StatusOr<Connection> ConnectTo(const std::string& address, const Options& options) {
   const bool none = IsSocket(address) && !HasSecurityFlags(options);
   const ChannelSecurity security = none ? ChannelSecurity() : options.security;
   auto channel = OpenChannel(address, security);
   if (!channel.ok()) {
-    return absl::Status(channel.status().code(),
-                        absl::StrCat("--server: ", channel.status().message()));
+    return absl::Status(channel.status().code(), absl::StrCat(FlagOf(channel.status().message()),
+                                                              ": ", channel.status().message()));
   }
   return Connection{.address = address,
                     .channel = *channel,

@@ -2,13 +2,16 @@
 
 #include <string>
 
+#include "absl/strings/match.h"
 #include "client/library/error_text.h"
 
 namespace ballpiston::client {
 namespace {
 
 // Errors from gRPC's own limits, such as the size of a message, have no reason.
-ExitCode OfLimit(const std::string& reason) {
+ExitCode OfLimit(const absl::Status& status) {
+  const std::string reason = ErrorReason(status);
+  if (absl::StrContains(status.message(), kTooLarge)) return ExitCode::kUsage;
   if (reason.empty()) return ExitCode::kFailed;
   return reason == "TOO_MANY_POINTS" ? ExitCode::kUsage : ExitCode::kUnreachable;
 }
@@ -27,7 +30,7 @@ ExitCode ExitCodeOf(const absl::Status& status) {
     case absl::StatusCode::kDeadlineExceeded:
       return ExitCode::kUnreachable;
     case absl::StatusCode::kResourceExhausted:
-      return OfLimit(ErrorReason(status));
+      return OfLimit(status);
     case absl::StatusCode::kNotFound:
       return ExitCode::kNotFound;
     case absl::StatusCode::kPermissionDenied:

@@ -56,10 +56,11 @@ VerbResult ReportRunning(const std::string& folder, const RunningServer& running
   return ExitCode::kDone;
 }
 
-// Makes the data folder for the log, before the server starts.
+// Makes the data folder for the log, before the server starts. A new folder is for this user only.
 absl::Status MakeFolder(const std::string& folder) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  const bool is_new = std::filesystem::create_directories(folder, error);
+  if (is_new) std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
   if (!error) return absl::OkStatus();
   return absl::PermissionDeniedError(
       absl::StrCat("--data-dir: cannot make the folder ", folder, ": ", error.message()));

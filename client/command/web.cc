@@ -19,7 +19,7 @@ VerbResult Web(const Options& options, Terminal& terminal) {
     };
     const absl::Status served = ServePage(*files, call, static_cast<int>(options.port), announce);
     if (served.ok()) return ExitCode::kDone;
-    return absl::FailedPreconditionError(
+    return absl::InvalidArgumentError(
         absl::StrCat("--port ", options.port, ": ", served.message()));
   });
 }

@@ -80,7 +80,7 @@ std::string PlainText(absl::StatusCode code, absl::string_view text) {
   const absl::string_view sizes = text.substr(text.find('(', begin) + 1);
   const std::pair<absl::string_view, absl::string_view> size_and_most =
       absl::StrSplit(absl::StripSuffix(sizes, ")"), absl::MaxSplits(" vs. ", 1));
-  return absl::StrCat("the request or its answer is too large to be sent: ", size_and_most.first,
+  return absl::StrCat("the request or its answer ", kTooLarge, ": ", size_and_most.first,
                       " bytes; at most ", size_and_most.second, " are permitted");
 }
 

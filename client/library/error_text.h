@@ -26,6 +26,9 @@
 
 namespace ballpiston::client {
 
+// In the text about a message that is too large for the transport.
+inline constexpr char kTooLarge[] = "is too large to be sent";
+
 // Type URL of the payload: a serialized google.rpc.Status.
 inline constexpr char kStatusPayload[] = "type.googleapis.com/google.rpc.Status";
 

@@ -156,8 +156,10 @@ absl::StatusOr<std::string> StartServer(const ServerProgram& program, absl::Dura
   std::optional<int> exit_status;
   Await(timeout, [&] {
     const auto server = FindServer(program.folder);
-    if (server) address = server->address;  // perhaps another one, started at the same time
     if (!exit_status) exit_status = ExitStatus(*pid);
+    // Perhaps of another server, started at the same time. Until the new server's id is known, the
+    // address may be that of an earlier server.
+    if (server && (server->pid != 0 || exit_status)) address = server->address;
     return !address.empty() || (exit_status && !server);
   });
   if (!address.empty()) return address;
@@ -176,7 +178,8 @@ absl::Status StopServer(const std::string& folder, absl::Duration timeout) {
   }
   const bool ended = Await(timeout, [&] {
     const auto now = FindServer(folder);
-    return !now || now->pid != server->pid;
+    // A server that ends empties the file before it releases the lock.
+    return !now || (now->pid != 0 && now->pid != server->pid);
   });
   if (ended) return absl::OkStatus();
   return absl::DeadlineExceededError(

@@ -2,6 +2,7 @@
 
 #include <httplib.h>
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -25,6 +26,8 @@ constexpr char kLoopback[] = "127.0.0.1";
 constexpr size_t kMostCallsPerConnection = 1000;
 // The longest time that a reader of a stream may pause.
 constexpr std::chrono::hours kPatience{1};
+// The longest pause within a request, and before one. Until then a connection keeps its thread.
+constexpr int kPauseSeconds = 1;
 
 using httplib::Request;
 using httplib::Response;
@@ -61,6 +64,19 @@ void RespondError(const absl::Status& status, Response& response) {
   RespondError(status, HttpStatus(status.code()), response);
 }
 
+// The library refuses a request that is too long, is not HTTP, or has a path or method without
+// handler.
+void ExplainRefusal(const Request&, Response& response) {
+  if (response.has_header("Content-Type")) return;  // it has a body
+  absl::Status status = absl::InvalidArgumentError("this is not a request of the gateway");
+  if (response.status == 413) {
+    status = absl::ResourceExhaustedError(
+        absl::StrCat("the request is too long; at most ", kMostRequestBytes, " bytes"));
+  }
+  if (response.status == 404) status = absl::UnimplementedError("no such page or method");
+  RespondError(status, response.status, response);
+}
+
 bool HasType(const Request& request, const std::string& type) {
   const std::string given = request.get_header_value("Content-Type");
   return given == type || absl::StartsWith(given, type + ";");
@@ -92,6 +108,9 @@ class WebServer {
   WebServer(const PageFiles& files, const GatewayCall& call) : files_(files), call_(call) {
     server_.new_task_queue = [] { return new httplib::ThreadPool(kMostConnections); };
     server_.set_payload_max_length(kMostRequestBytes);
+    server_.set_error_handler(ExplainRefusal);
+    server_.set_read_timeout(kPauseSeconds);
+    server_.set_keep_alive_timeout(kPauseSeconds);
     server_.set_write_timeout(kPatience);
     server_.set_keep_alive_max_count(kMostCallsPerConnection);
     server_.set_default_headers(SafeHeaders());
@@ -199,9 +218,15 @@ class WebServer {
 
   // Sends each answer as it arrives: the call runs while the response is written.
   void PassOnStream(JsonCall call, Response& response) const {
+    const std::shared_ptr<void> room(nullptr, [this](void*) { --streams_; });
+    if (++streams_ > kMostStreams) {
+      return RespondError(absl::ResourceExhaustedError(absl::StrCat(
+                              "the gateway has ", kMostStreams, " open streams; end one first")),
+                          response);
+    }
     const auto request = OpenEnvelope(call.request);
     response.set_chunked_content_provider(
-        kStreamType, [this, request, call](size_t, httplib::DataSink& sink) mutable {
+        kStreamType, [this, room, request, call](size_t, httplib::DataSink& sink) mutable {
           bool is_whole = true;  // false after a failed write
           const auto write = [&](const std::string& envelope) {
             is_whole =
@@ -223,7 +248,8 @@ class WebServer {
   const PageFiles& files_;
   const GatewayCall& call_;
   const std::string token_ = NewRequestId();
-  std::vector<std::string> hosts_;  // 127.0.0.1:PORT, localhost:PORT
+  std::vector<std::string> hosts_;        // 127.0.0.1:PORT, localhost:PORT
+  mutable std::atomic<int> streams_ = 0;  // open
   httplib::Server server_;
 };
 

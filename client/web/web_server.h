@@ -13,8 +13,9 @@
 //   Authorization  must be Bearer TOKEN in every call to the server. The page's files contain no
 //                  secrets and need no token.
 //
-// Each open stream uses one of kMostConnections threads. If its reader disconnects, the call ends
-// at the next message. A watch sends heartbeats, so that there is always a next message.
+// Each connection uses one of kMostConnections threads. A stream beyond kMostStreams is refused, so
+// that threads are left for other calls. If a stream's reader disconnects, the call ends at the
+// next message. A watch sends heartbeats, so that there is always a next message.
 #pragma once
 
 #include <functional>
@@ -27,7 +28,9 @@
 namespace ballpiston::client {
 
 inline constexpr int kMostConnections = 32;
-inline constexpr size_t kMostRequestBytes = 4 << 20;  // the same as gRPC's default limit
+inline constexpr int kMostStreams = 24;
+// JSON is two to three times longer than gRPC's message, of which the server permits 4 MiB.
+inline constexpr size_t kMostRequestBytes = 16 << 20;
 
 using GatewayCall = std::function<absl::Status(const JsonCall&, const JsonReceiver&)>;
 

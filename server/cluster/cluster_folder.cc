@@ -20,13 +20,13 @@ namespace ballpiston::server {
 namespace {
 
 absl::Status Unusable(const std::string& path, int error) {
-  const std::string why = absl::StrCat("cluster folder: ", path, ": ", std::strerror(error));
+  const std::string why = absl::StrCat(path, ": ", std::strerror(error));
   const bool is_full = error == ENOSPC || error == EDQUOT;
   return is_full ? absl::ResourceExhaustedError(why) : absl::UnavailableError(why);
 }
 
 absl::Status Refused(const std::string& path, const std::string& why) {
-  return absl::FailedPreconditionError(absl::StrCat("cluster folder: ", path, " ", why));
+  return absl::FailedPreconditionError(absl::StrCat(path, " ", why));
 }
 
 absl::Status CheckOwner(const std::string& path) {

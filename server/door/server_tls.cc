@@ -132,6 +132,10 @@ ServerTls::~ServerTls() {
 absl::Status ServerTls::Reload() {
   const absl::StatusOr<Identity> identity = ReadIdentity(files_);
   if (!identity.ok()) return identity.status();
+  const absl::Time now = absl::Now();
+  if (identity->expires <= now && now < expires()) {
+    return Unusable(files_.certificate, "has expired, but the certificate in use has not");
+  }
   const absl::Status exchanged = Exchange(identity->certificate_and_key);
   if (exchanged.ok()) expires_ = absl::ToUnixSeconds(identity->expires);
   return exchanged;

@@ -54,8 +54,9 @@ std::string Timed(const std::string& line) {
 }
 
 std::string LossLine(int64_t lines) {
-  return Timed(
-      LogLine(Severity::kWarning, "lines were dropped: the log was not read", {{"lines", lines}}));
+  return Timed(LogLine(Severity::kWarning,
+                       "lines were dropped: the log was not read or could not be written",
+                       {{"lines", lines}}));
 }
 
 }  // namespace

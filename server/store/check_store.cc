@@ -36,14 +36,15 @@ constexpr const char* kContradictions[] = {
     "SELECT 'job ' || id || ' succeeded with ' || count(job) || ' results of ' || points FROM jobs"
     " LEFT JOIN results ON job = sequence WHERE expired = 0 AND state = 4"
     " GROUP BY sequence HAVING count(job) <> points",
-    "SELECT 'a result without a point: job ' || job || ', point ' || point FROM results"
-    " LEFT JOIN jobs ON sequence = job WHERE ((sequence IS NULL OR expired = 1)"
+    "SELECT 'a result without a point: job ' || coalesce(id, job) || ', point ' || point"
+    " FROM results LEFT JOIN jobs ON sequence = job"
+    " WHERE ((sequence IS NULL OR expired = 1)"
     " AND job NOT IN (SELECT job FROM dropped)) OR point < 0 OR point >= points",
-    "SELECT 'a checkpoint without a point of an active job: job ' || job || ', point ' || point"
-    " FROM checkpoints LEFT JOIN jobs ON sequence = job"
+    "SELECT 'a checkpoint without a point of an active job: job ' || coalesce(id, job)"
+    " || ', point ' || point FROM checkpoints LEFT JOIN jobs ON sequence = job"
     " WHERE sequence IS NULL OR point < 0 OR point >= points OR state >= 4",
-    "SELECT 'a checkpoint of a finished point: job ' || job || ', point ' || point"
-    " FROM checkpoints JOIN results USING (job, point)",
+    "SELECT 'a checkpoint of a finished point: job ' || coalesce(id, job) || ', point ' || point"
+    " FROM checkpoints JOIN results USING (job, point) LEFT JOIN jobs ON sequence = job",
 };
 
 // Runs the checks one after the other, and collects what they find.
@@ -115,7 +116,9 @@ class StoreCheck {
   }
 
   void CheckResults() {
-    Query row = database_.Select("SELECT job, point, result, details, continuation FROM results");
+    Query row = database_.Select(
+        "SELECT coalesce(id, job), point, result, details, continuation FROM results"
+        " LEFT JOIN jobs ON sequence = job");
     while (row.Next()) {
       const auto result = ResultFromBytes(row.Get<std::string>(2));
       absl::Status status = result.status();
@@ -130,16 +133,18 @@ class StoreCheck {
   }
 
   void CheckCheckpoints() {
-    Query row = database_.Select("SELECT job, point, record FROM checkpoints");
+    Query row = database_.Select(
+        "SELECT coalesce(id, job), point, record FROM checkpoints"
+        " LEFT JOIN jobs ON sequence = job");
     while (row.Next()) {
       FoundIn(absl::StrCat("the checkpoint of ", PointOf(row)),
               FoldStateFromBytes(row.Get<std::string>(2)).status());
     }
   }
 
-  // The first columns are job and point.
+  // The first columns are the job's id, or its number if there is no such job, and the point.
   static std::string PointOf(const Query& row) {
-    return absl::StrCat("job ", row.Get<int64_t>(0), ", point ", row.Get<int64_t>(1));
+    return absl::StrCat("job ", row.Get<std::string>(0), ", point ", row.Get<int64_t>(1));
   }
 
   Database& database_;

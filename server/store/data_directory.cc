@@ -146,8 +146,8 @@ absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
   if (lock < 0) return NotWritable(path, errno);
   const int error = Lock(lock);
   if (error == 0) {
+    unlink(AddressFile(path).c_str());  // left by a killed server; before a client knows this one
     WriteProcessId(lock);
-    unlink(AddressFile(path).c_str());  // left by an earlier server
     return DataDirectory(path, lock);
   }
   close(lock);
@@ -161,9 +161,13 @@ DataDirectory::DataDirectory(DataDirectory&& other) noexcept
 
 DataDirectory::~DataDirectory() {
   if (lock_ < 0) return;
+  Leave();
+  close(lock_);
+}
+
+void DataDirectory::Leave() const {
   unlink(AddressFile(path_).c_str());
   EmptyLock(lock_);
-  close(lock_);
 }
 
 void DataDirectory::TellAddress(const std::string& address) const {

@@ -96,6 +96,10 @@ absl::Status Refused(const std::string& path, const std::string& why) {
 // If the disk is full or fails, or the file belongs to another user, the error says nothing about
 // the file's content.
 absl::Status RefusedFor(const std::string& path, const absl::Status& found) {
+  if (absl::IsPermissionDenied(found)) {
+    return absl::PermissionDeniedError(
+        absl::StrCat("store ", path, " cannot be opened by this user (", found.message(), ")"));
+  }
   if (!absl::IsUnavailable(found) && !absl::IsResourceExhausted(found)) {
     return Refused(path, absl::StrCat("is damaged (", found.message(), ")"));
   }
@@ -206,14 +210,13 @@ absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path)
   const absl::Status checked = CheckFile(path);
   if (!checked.ok()) return checked;
   auto database = Database::Open(path, Database::Mode::kReadWrite);
-  if (!database.ok()) return absl::PermissionDeniedError(database.status().message());
+  if (!database.ok()) return RefusedFor(path, database.status());
   bool unfinished = false;  // again: opening may have undone an interrupted change
   const absl::Status kind = CheckKind(path, **database, unfinished);
   if (!kind.ok()) return kind;
   const absl::Status prepared = Prepare(**database);
   if (prepared.ok()) return database;
-  if (!absl::IsPermissionDenied(prepared)) return RefusedFor(path, prepared);
-  return absl::PermissionDeniedError(absl::StrCat(path, ": ", prepared.message()));
+  return RefusedFor(path, prepared);
 }
 
 }  // namespace ballpiston::server

@@ -20,6 +20,9 @@ bool IsOutOfSpace(int code, int system_error) {
 
 absl::StatusCode CodeOf(int code, int system_error) {
   if (IsOutOfSpace(code, system_error)) return absl::StatusCode::kResourceExhausted;
+  if ((code & 0xff) == SQLITE_CANTOPEN && system_error == EACCES) {
+    return absl::StatusCode::kPermissionDenied;
+  }
   switch (code & 0xff) {
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:

@@ -104,7 +104,7 @@ TEST_F(JobTest, AQuestionThatIsTooLargeToBeSentIsAnError) {
   WriteFile(File("million.json"),
             R"({"experiment": "EQUILIBRIUM", "grid": {"delta": [0.1], "rho": [)" + numbers + "]}}");
   const ProcessResult refused = server_.Client({"run", "--spec", File("million.json")});
-  EXPECT_THAT(refused, ExitsWith(4));
+  EXPECT_THAT(refused, ExitsWith(2));
   EXPECT_EQ(refused.out, "");
   EXPECT_THAT(refused.err, HasSubstr("too large to be sent: 80000"));
   EXPECT_THAT(refused.err, HasSubstr("at most 4194304"));

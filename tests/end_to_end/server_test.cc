@@ -118,6 +118,7 @@ TEST_F(ServerTest, AServerInAFolderIsStartedCheckedCopiedAndStopped) {
       Server("start", Joined({named_, Split("--workers 1 --listen 127.0.0.1:0")}));
   EXPECT_THAT(started, ExitsWith(0));
   EXPECT_THAT(started.out, StartsWith("127.0.0.1:"));
+  EXPECT_THAT(Contents(home_.File("data/server.log")), Not(HasSubstr("sets its mode")));
   const std::string address = started.out.substr(0, started.out.find('\n'));
   EXPECT_THAT(Server("status", {"--server", address}).out, HasSubstr("0 of 1 busy"));
   EXPECT_THAT(Server("check", named_).out, HasSubstr("sound"));
@@ -126,6 +127,22 @@ TEST_F(ServerTest, AServerInAFolderIsStartedCheckedCopiedAndStopped) {
   EXPECT_TRUE(fs::exists(home_.File("copy")));
   EXPECT_THAT(Server("backup", backup), Not(ExitsWith(0)));  // the file exists
   EXPECT_THAT(Server("stop", named_), ExitsWith(0));
+}
+
+// A server that stops, and one that is killed, are followed by one at another address.
+TEST_F(ServerTest, StartPrintsTheAddressOfTheServerThatItStarted) {
+  for (int i = 0; i < 6; ++i) {
+    const std::string address = absl::StrCat("unix:", home_.File("socket"), i);
+    EXPECT_EQ(Server("start", Joined({named_, {"--listen", address}})).out, address + "\n");
+    if (i % 2 == 0) {
+      EXPECT_THAT(Server("stop", named_), ExitsWith(0));
+      EXPECT_EQ(Contents(home_.File("data/lock")), "");
+      EXPECT_FALSE(fs::exists(home_.File("data/server.address")));
+    } else {
+      KillServers();
+      AwaitThat([&] { return Servers().empty(); });
+    }
+  }
 }
 
 // The lock file of a folder that another machine uses holds the number of a process of that
@@ -193,7 +210,8 @@ TEST(ServerLog, TheServerGoesOnWhenNobodyReadsItsLog) {
   }
   log.Read();
   EXPECT_EQ(server.Stop(), 0);
-  EXPECT_THAT(log.Read(), HasSubstr("warning: lines were dropped: the log was not read (lines="));
+  EXPECT_THAT(log.Read(), HasSubstr("warning: lines were dropped: the log was not read or "
+                                    "could not be written (lines="));
 }
 
 }  // namespace

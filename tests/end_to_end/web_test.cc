@@ -2,6 +2,11 @@
 // server.
 #include <httplib.h>
 
+#include <atomic>
+#include <functional>
+#include <thread>
+#include <utility>
+
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
@@ -126,7 +131,13 @@ TEST_F(WebTest, ErrorsHaveTheServersCodesReasonsAndViolations) {
   EXPECT_EQ(Post("/ballpiston.v1.EnsembleService/Nothing", "{}")->status, 404);
   EXPECT_EQ(Post("/ballpiston.v1.EnsembleJob/spec", "{}")->status, 404);
   EXPECT_EQ(Post("GetEnsembleJob", "{}", {{"Connect-Timeout-Ms", "-1"}})->status, 400);
-  EXPECT_EQ(Post("GetEnsembleJob", std::string(5 << 20, ' '))->status, 413);
+  EXPECT_EQ(Post("GetEnsembleJob", std::string(15 << 20, ' '))->status, 400);
+  const httplib::Result long_one = Post("GetEnsembleJob", std::string(17 << 20, ' '));
+  EXPECT_EQ(long_one->status, 413);
+  EXPECT_THAT(long_one->body, HasSubstr(R"("code":"resource_exhausted")"));
+  const httplib::Result no_method = http_->Put("/a/b", "{}", kUnary);
+  EXPECT_EQ(no_method->status, 404);
+  EXPECT_THAT(no_method->body, HasSubstr(R"("code":"unimplemented")"));
 }
 
 TEST_F(WebTest, CallsNeedTheTokenAndThisPagesOriginAndHost) {
@@ -173,26 +184,44 @@ TEST_F(WebTest, ReconnectsToAServerThatWasRestarted) {
   AwaitThat([&] { return Post(method, "{}")->status == 200; });
 }
 
-// When a reader disconnects its call ends, so there is room for the next calls.
+// Streams have their own limit, so the other calls find a thread. When a reader disconnects its
+// call ends, so there is room for the next streams.
 TEST_F(WebTest, AStreamEndsWhenItsReaderDisconnects) {
   const std::string name = server_.Submit(kEndlessQuestion);
-  const std::string body = Envelope(absl::StrCat("{\"name\": \"", name, "\"}"));
-  for (int i = 0; i < 40; ++i) {  // more than the gateway has threads
+  const auto watch = [&](const std::function<bool()>& goes_on) {
     httplib::Client reader(host_);
     reader.set_read_timeout(kPatience);
     httplib::Request request;
     request.method = "POST";
     request.path = std::string(kJobs) + "WatchEnsembleJob";
     request.headers = {{"Authorization", "Bearer " + token_}, {"Content-Type", kStream}};
-    request.body = body;
+    request.body = Envelope(absl::StrCat("{\"name\": \"", name, "\"}"));
     std::string received;
-    request.content_receiver = [&received](const char* data, size_t size, uint64_t, uint64_t) {
+    request.content_receiver = [&](const char* data, size_t size, uint64_t, uint64_t) {
       received.append(data, size);
-      return false;  // enough
+      return goes_on();
     };
     reader.send(request);
-    EXPECT_THAT(received, HasSubstr(name)) << i;
+    return received;
+  };
+  std::atomic<int> open = 0;
+  std::atomic<bool> ended = false;
+  {
+    std::vector<std::jthread> readers;
+    for (int i = 0; i < 24; ++i) {
+      readers.emplace_back([&] {
+        watch([&, is_first = true]() mutable {
+          open += std::exchange(is_first, false) ? 1 : 0;
+          return !ended;
+        });
+      });
+    }
+    AwaitThat([&] { return open == 24; });
+    EXPECT_THAT(watch([] { return false; }), HasSubstr(R"("code":"resource_exhausted")"));
+    EXPECT_EQ(Post("ListEnsembleJobs", "{}")->status, 200);
+    ended = true;
   }
+  AwaitThat([&] { return absl::StrContains(watch([] { return false; }), name); });
   EXPECT_THAT(server_.Client({"cancel", name}), ExitsWith(0));
 }
 
@@ -206,7 +235,7 @@ TEST(WebFlags, TheErrorNamesAPortInUse) {
   const std::string url = web->Output();
   const std::string port = url.substr(17, url.find("/#") - 17);  // after http://127.0.0.1:
   const ProcessResult taken = server.Client({"web", "--port", port});
-  EXPECT_THAT(taken, ExitsWith(4));
+  EXPECT_THAT(taken, ExitsWith(2));
   EXPECT_THAT(taken.err, HasSubstr(absl::StrCat("--port ", port, ": the port is in use")));
   web->Signal(SIGINT);
   EXPECT_THAT(web->Wait(), ExitsWith(130));

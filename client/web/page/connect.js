@@ -55,7 +55,7 @@
     }
     if (response.ok) return response;
     const error = await response.json().catch(() => null);
-    // Without JSON: of the gateway itself, for example if the request is too large for it.
+    // Without JSON: the answer is not whole, or is not the gateway's.
     const code = response.status < 500 ? 'invalid_argument' : 'unknown';
     throw errorOf(error ?? {message: `HTTP status ${response.status}`}, code);
   }

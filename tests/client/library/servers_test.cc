@@ -123,6 +123,24 @@ TEST_F(ServerProcessTest, AServerThatDoesNotListenIsFoundAndReported) {
   EXPECT_OK(StopServer(data_));
 }
 
+// An earlier server, which was killed, left its address. The new server removes it late.
+TEST_F(ServerProcessTest, TheAddressIsThatOfTheNewServer) {
+  constexpr char kLateLock[] =
+      "exec 9>>$2/lock; flock -w 1 9 || exit 1; sleep 0.1; rm $2/server.address\n";
+  WriteFile(data_ + "/server.address", "unix:old\n");
+  EXPECT_THAT(StartServer(Program(absl::StrCat(kLateLock, "echo $$ >$2/lock\n", kListen, kWait))),
+              IsOkAndHolds("unix:" + data_ + "/socket"));
+  EXPECT_OK(StopServer(data_));
+}
+
+// It empties the lock's file before it releases the lock.
+TEST_F(ServerProcessTest, StopWaitsUntilTheFolderIsFree) {
+  ASSERT_OK(StartServer(Program(absl::StrCat(
+      "trap 'rm $2/server.address; : >$2/lock; sleep 0.1; exit' TERM\n", kLock, kListen, kWait))));
+  EXPECT_OK(StopServer(data_));
+  EXPECT_EQ(FindServer(data_), std::nullopt);
+}
+
 TEST_F(ServerProcessTest, ErrorNamesAServerThatIsStillStopping) {
   ASSERT_OK(StartServer(Program(absl::StrCat("trap '' TERM\n", kLock, kListen, kWait))));
   const pid_t pid = FindServer(data_)->pid;
@@ -270,7 +288,8 @@ TEST_F(LocalServerTest, StartsAServerWhenAnotherLeavesTheFolder) {
       .folder = home_.string(),
       .socket = second.SocketPath(),
       .program = Program(absl::StrCat(
-          "cd ", home_.string(), "; if [ -e once ]; then exec 9>>lock; flock -w 1 9 || exit 1; ",
+          "cd ", home_.string(),
+          "; if [ -e once ]; then exec 9>>lock; flock -w 1 9 || exit 1; echo $$ >lock; ",
           "echo unix:", second.SocketPath(), " >server.address; touch twice; ",
           "while [ -e once ] && kill -0 $PPID; do sleep 0.01 9>&-; done; exit 1; fi; ",
           "touch once; exit 1")),

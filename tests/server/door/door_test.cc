@@ -169,6 +169,13 @@ TEST(Start, WithAnExpiredCertificateTheServerStartsAndLogs) {
   AwaitThat([&] { return list().ok(); });
 }
 
+TEST_F(SecureServer, AnExpiredCertificateDoesNotReplaceAValidOne) {
+  using std::chrono::hours;
+  files_.WriteCertificate(files_.authority().Issue("expired", {hours(-2), hours(-1)}));
+  EXPECT_THAT(Reload(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("has expired")));
+  EXPECT_OK(List(Channel(), kAlice));
+}
+
 // First a certificate of 24 hours, like the others here, then one of a year.
 TEST_F(SecureServer, ACertificateThatEndsSoonIsLogged) {
   const auto reload = [this] {

@@ -2,6 +2,7 @@
 #include "server/store/backup.h"
 
 #include "server/store/check_store.h"
+#include "server/store/job_name.h"
 #include "server/store/schema.h"
 #include "tests/server/preamble.h"
 
@@ -59,9 +60,11 @@ TEST_F(BackupTest, ASoundStoreIsSummedUpAndCopiedIntoOneFileOfMode0600) {
 }
 
 TEST_F(BackupTest, EachInconsistencyIsReported) {
+  MakeStore();
+  const std::string finished = *JobIdOf(finished_), unfinished = *JobIdOf(unfinished_);
   const struct {
     const char* sql;
-    const char* sentence;
+    std::string sentence;
   } damages[] = {
       {"UPDATE jobs SET state = 9 WHERE sequence = 1", "has an unknown state: 9"},
       {"UPDATE jobs SET message = x'ff' WHERE sequence = 1", "cannot be read"},
@@ -72,20 +75,21 @@ TEST_F(BackupTest, EachInconsistencyIsReported) {
       {"UPDATE jobs SET points = 3 WHERE sequence = 1", "succeeded with 2 results of 3"},
       {"DELETE FROM results WHERE job = 1 AND point = 1", "succeeded with 1 results of 2"},
       {"UPDATE results SET point = 7 WHERE job = 1 AND point = 1", "a result without a point"},
-      {"UPDATE results SET result = x'ff' WHERE job = 1 AND point = 1", "the result of job 1"},
+      {"UPDATE results SET result = x'ff' WHERE job = 1 AND point = 1",
+       "the result of job " + finished},
       {"INSERT INTO results VALUES (77, 0, 1, 1, 0, x'', x'', x'')",
        "a result without a point: job 77, point 0"},
       {"UPDATE results SET details = x'ff' WHERE job = 1 AND point = 1",
-       "the result of job 1, point 1"},
+       "the result of job " + finished + ", point 1"},
       {"UPDATE results SET continuation = x'ff' WHERE job = 1 AND point = 1",
-       "the result of job 1, point 1"},
+       "the result of job " + finished + ", point 1"},
       {"INSERT INTO checkpoints VALUES (1, 0, x'')",
-       "a checkpoint without a point of an active job"},
+       "a checkpoint without a point of an active job: job " + finished + ", point 0"},
       {"INSERT OR REPLACE INTO checkpoints VALUES (2, 2, x'ff')",
-       "the checkpoint of job 2, point 2"},
-      {"INSERT INTO checkpoints VALUES (2, 0, x'')", "a checkpoint of a finished point"},
+       "the checkpoint of job " + unfinished + ", point 2"},
+      {"INSERT INTO checkpoints VALUES (2, 0, x'')",
+       "a checkpoint of a finished point: job " + unfinished + ", point 0"},
   };
-  MakeStore();
   const std::string sound = Contents(Store());
   for (const auto& damage : damages) {
     WriteFile(Store(), sound);

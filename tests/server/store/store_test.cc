@@ -133,6 +133,17 @@ TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
   }
 }
 
+TEST_F(StoreTest, AFileThatThisUserCannotOpenIsNotPermitted) {
+  Open();
+  ASSERT_EQ(chmod(File().c_str(), 0), 0);
+  ASSERT_EQ(chmod(folder_.path().c_str(), 0777), 0);
+  const uid_t user = geteuid();
+  if (user == 0) ASSERT_EQ(seteuid(65534), 0);  // root can open every file
+  const absl::Status opened = Store::Open(File(), {}).status();
+  if (user == 0) ASSERT_EQ(seteuid(user), 0);
+  EXPECT_THAT(opened, StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr(File())));
+}
+
 TEST_F(StoreTest, AnImpossibleWriteIsRejectedAlone) {
   const auto store = Open({.delay = kUnreachedLimit});
   const auto broken = [](Database& database) {
