@@ -20,6 +20,12 @@ constexpr double kClosedFormError = kMeanFreeTimeRelativeError + kConditionalRat
 // Not below x: rounding to two digits lowers a number by at most 4.8 %.
 std::string RoundedUp(double x) { return Rounded(1.05 * x); }
 
+// The model that is expected to answer, without pilots.
+Model ExpectedModel(const EnsembleSpec& spec, const PointParameters& point) {
+  if (spec.model != Model::kAuto) return spec.model;
+  return ChooseAnswer(spec, point, Machine(), PredictedPilot)->model;
+}
+
 // The largest model error of any point, if a pilot can check it. For a model that samples, at least
 // the statistical error of the largest permitted number of samples.
 double LeastTolerance(const EnsembleSpec& spec) {
@@ -28,20 +34,15 @@ double LeastTolerance(const EnsembleSpec& spec) {
   for (size_t i = 0; i < PointCount(spec); ++i) {
     const PointParameters point = PointAt(spec, i);
     const Question question(spec, point, Machine());
-    if (spec.model != Model::kMarkov || question.HasPilots()) {
-      least = std::max(least, question.ModelErrorOf(spec.model).value_or(0));
+    const Model model = ExpectedModel(spec, point);
+    if (model != Model::kMarkov || question.HasPilots()) {
+      least = std::max(least, question.ModelErrorOf(model).value_or(0));
     }
-    if (spec.model == Model::kSpectrum) continue;
-    const double sampled = ScatterOf(spec, point).ErrorOf(static_cast<double>(kMaxSamples));
+    if (!TakesSamples(model)) continue;
+    const double sampled = question.ScatterBy(model).ErrorOf(static_cast<double>(kMaxSamples));
     if (std::isfinite(sampled)) least = std::max(least, sampled);
   }
   return least;
-}
-
-// The model that is expected to answer, without pilots.
-Model ExpectedModel(const EnsembleSpec& spec, const PointParameters& point) {
-  if (spec.model != Model::kAuto) return spec.model;
-  return ChooseAnswer(spec, point, Machine(), PredictedPilot)->model;
 }
 
 // The names and values of the parameters of a point.

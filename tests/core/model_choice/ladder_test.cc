@@ -456,6 +456,9 @@ TEST(Ladder, AToleranceBelowTheModelsErrorIsRejected) {
            {"energy-relaxation delta=0.2 tolerance=1e-5", 0},
            {"energy-relaxation delta=0.2 tolerance=1e-9", 1},
            {"energy-relaxation delta=0.2 tolerance=1e-9 model=billiard_reference", 1},
+           // AUTO answers by the spectrum, which takes no samples.
+           {"energy-relaxation delta=1e-6 tolerance=1e-6", 0},
+           {"energy-relaxation delta=1e-6 tolerance=1e-8 precision=single", 0},
            // The worst point of the grid counts.
            {"energy-relaxation delta=0.01 tolerance=0.01 model=spectrum", 0},
            {"energy-relaxation delta=0.01,0.2 tolerance=0.01 model=spectrum", 1},
