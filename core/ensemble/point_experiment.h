@@ -68,7 +68,7 @@ class PointExperiment {
   // If the plan has no samples, the answer needs no block, and `merged` is empty.
   const ChunkPlan& plan() const { return plan_; }
   // The chunks that the target is expected to take: with a tolerance fewer than the plan has.
-  uint64_t expected_chunks() const { return expected_chunks_; }
+  uint64_t expected_chunks() const { return plan_.ChunksFor(expected_samples_); }
   const PointParameters& parameters() const { return parameters_; }
   const Answer& answer() const { return answer_; }
 
@@ -125,10 +125,9 @@ class PointExperiment {
   Answer answer_;
   Engine engine_;
   ChunkPlan plan_;
-  uint64_t expected_chunks_;
+  double expected_samples_;  // that reach the tolerance; infinite without one
   const AimedEstimate* aim_;
   std::optional<double> tolerance_;
-  double least_samples_;  // with fewer a tolerance is not judged
   RandomStream random_;
   BlockResult empty_;
   std::vector<Measurement> table_;

@@ -248,7 +248,7 @@ class Drawing {
     if (dice_.Chance(0.65)) {
       spec_.set_model(server::ModelMessage(
           dice_.Chance(0.95)
-              ? dice_.Pick<Model>({experiment_.models.begin(), experiment_.models.end()})
+              ? dice_.Pick<Model>({experiment_.models().begin(), experiment_.models().end()})
               : kLadder[dice_.Below(std::size(kLadder))]));
     } else {
       spec_.set_verify(dice_.Chance(0.3));

@@ -80,7 +80,7 @@ TEST(Ladder, ModelsAreChosenWithAReason) {
 
 TEST(Ladder, ANamedModelAnswersWithAnyError) {
   for (const ExperimentKind* experiment : kAllExperiments) {
-    for (const Model model : experiment->models) {
+    for (const Model model : experiment->models()) {
       EnsembleSpec spec = OnePointOf(experiment);
       spec.model = model;
       const Answer answer = *Choice(spec);
