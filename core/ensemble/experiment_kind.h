@@ -1,5 +1,5 @@
 // Each experiment has one row, which describes it to the rest of the program. The row stands in the
-// experiment's file, and experiment/all_experiments.h lists all rows. Validation, plans, ladder,
+// experiment's file, and experiment/all_experiments.cc lists all rows. Validation, plans, ladder,
 // predictions and random streams read rows.
 #pragma once
 

@@ -115,16 +115,12 @@ double RelativeError(const Estimate& estimate) {
   return *estimate.standard_error / std::fabs(estimate.value);
 }
 
-bool MeetsTolerance(const Estimate& estimate, double tolerance) {
-  return RelativeError(estimate) <= tolerance;
-}
-
 // A value that is many times too large by chance, such as that of a current between nearly equal
 // temperatures, has a small relative error. So a tolerance is not judged with few samples.
 bool PointExperiment::ReachesTolerance(const BlockResult& merged) const {
   constexpr double kLeastShare = 0.25;
   return tolerance_ && static_cast<double>(merged.samples) >= kLeastShare * expected_samples_ &&
-         MeetsTolerance(FirstEstimate(merged), *tolerance_);
+         RelativeError(FirstEstimate(merged)) <= *tolerance_;
 }
 
 }  // namespace ballpiston

@@ -48,9 +48,6 @@ struct Answer {
 // The relative standard error; infinite if there is none.
 double RelativeError(const Estimate& estimate);
 
-// Whether the estimate's relative standard error, if it has one, is at most `tolerance`.
-bool MeetsTolerance(const Estimate& estimate, double tolerance);
-
 class PointExperiment {
  public:
   virtual ~PointExperiment() = default;

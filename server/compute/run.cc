@@ -277,7 +277,7 @@ void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun
   open.fold().Finish();
   if (!target.tolerance) return;
   const Estimate reached = open.experiment()->FirstEstimate(open.fold().Merged());
-  if (MeetsTolerance(reached, *target.tolerance)) return;
+  if (RelativeError(reached) <= *target.tolerance) return;
   NoteShortfall({lease.point, ToleranceNotReached(*spec_, lease.point, reached)});
 }
 

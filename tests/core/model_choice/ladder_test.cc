@@ -79,7 +79,7 @@ TEST(Ladder, ModelsAreChosenWithAReason) {
 }
 
 TEST(Ladder, ANamedModelAnswersWithAnyError) {
-  for (const ExperimentKind* experiment : kAllExperiments) {
+  for (const ExperimentKind* experiment : AllExperiments()) {
     for (const Model model : experiment->models()) {
       EnsembleSpec spec = OnePointOf(experiment);
       spec.model = model;
