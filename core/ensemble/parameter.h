@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <initializer_list>
 #include <optional>
@@ -60,7 +61,7 @@ class PointParameters {
     values_[parameter.index] = value;
   }
 
-  friend bool operator==(const PointParameters&, const PointParameters&) = default;
+  friend auto operator<=>(const PointParameters&, const PointParameters&) = default;
 
  private:
   std::array<std::optional<double>, kParameters.size()> values_ = {};

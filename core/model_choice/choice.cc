@@ -26,7 +26,7 @@ double HitsOf(const PointParameters& point, double orbits) {
 constexpr double kMostHitsOfAPilot = 1e13;
 
 double HitsOfPilot(const PilotPlace& place) {
-  return HitsOf(PointOf(place), static_cast<double>(kPilotOrbits));
+  return HitsOf(place, static_cast<double>(kPilotOrbits));
 }
 
 // The billiard as the answer; `why` is the reason that no cheaper model answers.

@@ -110,7 +110,7 @@ TEST(Ladder, APilotRunsOnlyIfItCanDecide) {
       const double error_of_pilot = PredictedPilot(place).standard_error;
       // Pilots that leave the limit just within the tolerance, and just beyond.
       for (const double share : {0.999, 1.001}) {
-        const double there = share * tolerance * place.delta / delta;
+        const double there = share * tolerance * place[kDelta] / delta;
         const Pilot pilot = {.difference = std::max(there - 2 * error_of_pilot, 0.0),
                              .standard_error = error_of_pilot};
         MadeUpPilots pilots(pilot), of_slower(pilot);
