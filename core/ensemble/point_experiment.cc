@@ -31,10 +31,9 @@ double SamplesExpected(const EnsembleSpec& spec, const PointParameters& point) {
 
 }  // namespace
 
-double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point) {
+double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point, double samples) {
   const ChunkPlan plan = PlanFor(spec, point);
-  const uint64_t chunks = plan.ChunksFor(SamplesExpected(spec, point));
-  return plan.SecondsFor(static_cast<double>(plan.SamplesBefore(chunks)));
+  return plan.SecondsFor(static_cast<double>(plan.SamplesBefore(plan.ChunksFor(samples))));
 }
 
 std::optional<double> Answer::ModelErrorOf(std::string_view name, bool is_first) const {

@@ -139,7 +139,8 @@ std::unique_ptr<PointExperiment> CreateAs(const EnsembleSpec& spec, const PointP
 // The largest number of samples that the target requests at a point; 1 to kMaxSamples.
 uint64_t SamplesAskedFor(const Target& target, const Forecast& forecast);
 
-// The time of the point on one core at nominal speed, by spec.model. Requires a model that samples.
-double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point);
+// The time of this many samples of the point, or of all if the target asks for fewer, on one core
+// at nominal speed, by spec.model. Requires a model that samples.
+double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point, double samples);
 
 }  // namespace ballpiston

@@ -136,7 +136,8 @@ std::vector<FieldViolation> AnswerViolations(const EnsembleSpec& spec) {
     if (tolerance && !without_an_error) without_an_error = WithoutAnError(spec, expected);
     if (tolerance) least = std::max(least, LeastTolerance(spec, expected));
     if (!takes_time || !TakesSamples(model) || too_long) continue;
-    const double seconds = NominalSeconds(OnePointSpec(spec, point, model), point);
+    const double needed = tolerance ? scatter.SamplesFor(*tolerance) : HUGE_VAL;
+    const double seconds = NominalSeconds(OnePointSpec(spec, point, model), point, needed);
     if (!(seconds <= kMostSeconds)) too_long = TooLong(spec, point, seconds);
   }
   if (without_an_error) return {*without_an_error};
