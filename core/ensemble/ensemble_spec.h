@@ -60,7 +60,7 @@ struct FieldViolation {
 
 // The errors of the spec itself. Combinations of the grid's values are checked if each value is
 // permitted. What the answering model cannot do is found by model_choice/ladder.h: a program that
-// asks with AUTO needs its DomainViolations too.
+// asks with AUTO needs its AnswerViolations too.
 std::vector<FieldViolation> Violations(const EnsembleSpec& spec);
 
 size_t PointCount(const EnsembleSpec& spec);

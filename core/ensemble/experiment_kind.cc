@@ -9,13 +9,6 @@
 #include "core/statistics/stated_error.h"
 
 namespace ballpiston {
-namespace {
-
-bool IsOneOf(std::span<const Model> models, Model model) {
-  return model == Model::kAuto || std::find(models.begin(), models.end(), model) != models.end();
-}
-
-}  // namespace
 
 double Scatter::ErrorOf(double samples) const {
   if (samples < SamplesForAnError()) return std::numeric_limits<double>::infinity();
@@ -29,16 +22,14 @@ double Scatter::SamplesFor(double tolerance) const {
   return std::max(ratio * ratio, SamplesForAnError());
 }
 
-bool AimedEstimate::IsAnsweredBy(Model model) const { return IsOneOf(models, model); }
-
-bool ExperimentKind::IsAnsweredBy(Model model) const { return IsOneOf(models, model); }
+bool AimedEstimate::IsAnsweredBy(Model model) const {
+  return model == Model::kAuto || std::ranges::find(models, model) != models.end();
+}
 
 const AimedEstimate* ExperimentKind::FindAim(absl::string_view aim) const {
   if (aim.empty()) return &aims.front();
-  for (const AimedEstimate& known : aims) {
-    if (known.name == aim) return &known;
-  }
-  return nullptr;
+  const auto found = std::ranges::find(aims, aim, &AimedEstimate::name);
+  return found == aims.end() ? nullptr : &*found;
 }
 
 const AimedEstimate& AimOf(const EnsembleSpec& spec) {
@@ -54,10 +45,8 @@ Scatter ScatterOf(const EnsembleSpec& spec, const PointParameters& point) {
 }
 
 const ExperimentKind* FindExperiment(uint64_t number) {
-  for (const ExperimentKind* kind : AllExperiments()) {
-    if (kind->number == number) return kind;
-  }
-  return nullptr;
+  const auto found = std::ranges::find(AllExperiments(), number, &ExperimentKind::number);
+  return found == AllExperiments().end() ? nullptr : *found;
 }
 
 double MemoryOf(const EnsembleSpec& spec, const PointParameters& point, int threads) {

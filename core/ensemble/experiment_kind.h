@@ -1,5 +1,5 @@
 // Each experiment has one row, which describes it to the rest of the program. The row stands in the
-// experiment's file, and experiment/all_experiments.h lists all rows. Validation, plans, ladder,
+// experiment's file, and experiment/all_experiments.cc lists all rows. Validation, plans, ladder,
 // predictions and random streams read rows.
 #pragma once
 
@@ -108,8 +108,8 @@ struct ExperimentKind {
   absl::string_view name;  // as users write it: "first-hit"
   uint64_t number;         // as in the API; decides the random streams
   std::span<const ParameterUse> parameters;
-  std::span<const Model> models;        // that can answer one of the aims; cheapest first
-  std::span<const AimedEstimate> aims;  // the first one is the default
+  // The first one is the default. Its models include those of all others.
+  std::span<const AimedEstimate> aims;
 
   // `spec` has one point, which is `point`, and a model of `models`.
   std::unique_ptr<PointExperiment> (*create)(const EnsembleSpec& spec,
@@ -133,8 +133,9 @@ struct ExperimentKind {
   std::vector<std::vector<double>> (*expected_probabilities)(const PointParameters& point) =
       nullptr;
 
-  // Besides AUTO, which answers everything.
-  bool IsAnsweredBy(Model model) const;
+  // The models that can answer one of the aims; cheapest first.
+  std::span<const Model> models() const { return aims.front().models; }
+  bool IsAnsweredBy(Model model) const { return aims.front().IsAnsweredBy(model); }
   // The aim of this name; the default if the name is empty, null if there is none.
   const AimedEstimate* FindAim(absl::string_view aim) const;
 };

@@ -5,20 +5,9 @@
 #include "absl/strings/str_cat.h"
 #include "core/arithmetic/number_text.h"
 #include "core/gas/gas_shape.h"
-#include "core/geometry/temperature.h"
 
 namespace ballpiston {
 namespace {
-
-absl::Status InRange(const Parameter& parameter, double value, double lower, double upper) {
-  if (value >= lower && value <= upper) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(parameter.name, " is ", NumberText(value),
-                                                 "; permitted: [", lower, ", ", upper, "]"));
-}
-
-absl::Status IsTemperature(const Parameter& parameter, double value) {
-  return InRange(parameter, value, kMinTemperature, kMaxTemperature);
-}
 
 bool IsCodeOfShape(double value) {
   constexpr double kAboveAllCodes = 0x1p41;
@@ -29,10 +18,11 @@ bool IsCodeOfShape(double value) {
 
 }  // namespace
 
-absl::Status ValidateEpsilon(double epsilon) { return InRange(kEpsilon, epsilon, 0, 0.5); }
-
-absl::Status ValidateExponent(double exponent) {
-  return InRange(kExponent, exponent, 0, kMaxExponent);
+absl::Status Parameter::Validate(double value) const {
+  if (validate != nullptr) return validate(value);
+  if (value >= lower && value <= upper) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(name, " is ", NumberText(value), "; permitted: [", lower, ", ", upper, "]"));
 }
 
 absl::Status ValidateCells(double cells) {
@@ -41,14 +31,6 @@ absl::Status ValidateCells(double cells) {
                                                  "; permitted: codes of N or NxM, 1 to ", kMaxCells,
                                                  " cells in all"));
 }
-
-absl::Status ValidateTemperature(double temperature) {
-  return IsTemperature(kTemperature, temperature);
-}
-
-absl::Status ValidateHot(double temperature) { return IsTemperature(kHot, temperature); }
-
-absl::Status ValidateCold(double temperature) { return IsTemperature(kCold, temperature); }
 
 PointParameters::PointParameters(
     std::initializer_list<std::pair<const Parameter&, std::optional<double>>> values) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <initializer_list>
 #include <optional>
@@ -12,35 +13,35 @@
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/geometry/temperature.h"
 
 namespace ballpiston {
 
+// One value alone is permitted from `lower` to `upper`, or by a function.
 struct Parameter {
-  absl::string_view name;                  // of the grid's list
-  size_t index;                            // in kParameters; determines random streams
-  absl::Status (*validate)(double value);  // one value alone: name, value, permitted range
+  absl::string_view name;  // of the grid's list
+  size_t index;            // in kParameters; determines random streams
+  double lower = 0, upper = 0;
+  absl::Status (*validate)(double value) = nullptr;
+
+  absl::Status Validate(double value) const;  // name, value, permitted range
 };
 
 inline constexpr double kMaxExponent = 1000;
 
-absl::Status ValidateEpsilon(double epsilon);
-absl::Status ValidateExponent(double exponent);
 absl::Status ValidateCells(double cells);  // OK if `cells` is the code of a shape
-absl::Status ValidateTemperature(double temperature);
-absl::Status ValidateHot(double temperature);
-absl::Status ValidateCold(double temperature);
 
-inline constexpr Parameter kRho = {"rho", 0, ValidateRho};
-inline constexpr Parameter kDelta = {"delta", 1, ValidateSomeDelta};
-inline constexpr Parameter kEpsilon = {"epsilon", 2, ValidateEpsilon};
-inline constexpr Parameter kExponent = {"exponent", 3, ValidateExponent};
+inline constexpr Parameter kRho = {.name = "rho", .index = 0, .validate = ValidateRho};
+inline constexpr Parameter kDelta = {.name = "delta", .index = 1, .validate = ValidateSomeDelta};
+inline constexpr Parameter kEpsilon = {"epsilon", 2, 0, 0.5};
+inline constexpr Parameter kExponent = {"exponent", 3, 0, kMaxExponent};
 // The shape of a gas, as the code that CodeOf of core/gas/gas_shape.h makes of it.
-inline constexpr Parameter kCells = {"cells", 4, ValidateCells};
+inline constexpr Parameter kCells = {.name = "cells", .index = 4, .validate = ValidateCells};
 // The temperature of a gas in equilibrium, and those of the two reservoirs at the ends of a gas.
 // The Boltzmann constant is 1 (core/geometry/temperature.h).
-inline constexpr Parameter kTemperature = {"temperature", 5, ValidateTemperature};
-inline constexpr Parameter kHot = {"hot", 6, ValidateHot};
-inline constexpr Parameter kCold = {"cold", 7, ValidateCold};
+inline constexpr Parameter kTemperature = {"temperature", 5, kMinTemperature, kMaxTemperature};
+inline constexpr Parameter kHot = {"hot", 6, kMinTemperature, kMaxTemperature};
+inline constexpr Parameter kCold = {"cold", 7, kMinTemperature, kMaxTemperature};
 
 // In the order of a grid's loops, outermost first.
 inline constexpr std::array kParameters = {&kRho,   &kDelta,       &kEpsilon, &kExponent,
@@ -60,7 +61,7 @@ class PointParameters {
     values_[parameter.index] = value;
   }
 
-  friend bool operator==(const PointParameters&, const PointParameters&) = default;
+  friend auto operator<=>(const PointParameters&, const PointParameters&) = default;
 
  private:
   std::array<std::optional<double>, kParameters.size()> values_ = {};

@@ -23,26 +23,17 @@ ChunkPlan PlanFor(const EnsembleSpec& spec, const PointParameters& point) {
   return ChunkPlan(samples, EngineFor(spec), events, spec.experiment->samples_together);
 }
 
-uint64_t ExpectedChunks(const EnsembleSpec& spec, const PointParameters& point,
-                        const ChunkPlan& plan) {
-  if (!spec.target.tolerance || plan.samples() == 0) return plan.chunks();
-  return plan.ChunksFor(ScatterOf(spec, point).SamplesFor(*spec.target.tolerance));
-}
-
-// A tolerance is judged from this number of samples on. A value that is many times too large by
-// chance, such as that of a current between nearly equal temperatures, has a small relative error.
-double LeastSamples(const EnsembleSpec& spec, const PointParameters& point, const ChunkPlan& plan) {
-  constexpr double kShare = 0.25;
-  if (!spec.target.tolerance || plan.samples() == 0) return 0;
-  return kShare * ScatterOf(spec, point).SamplesFor(*spec.target.tolerance);
+// The samples that are expected to reach the tolerance; infinite without one.
+double SamplesExpected(const EnsembleSpec& spec, const PointParameters& point) {
+  if (!spec.target.tolerance || !TakesSamples(Sampled(spec.model))) return HUGE_VAL;
+  return ScatterOf(spec, point).SamplesFor(*spec.target.tolerance);
 }
 
 }  // namespace
 
-double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point) {
+double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point, double samples) {
   const ChunkPlan plan = PlanFor(spec, point);
-  return plan.SecondsFor(
-      static_cast<double>(plan.SamplesBefore(ExpectedChunks(spec, point, plan))));
+  return plan.SecondsFor(static_cast<double>(plan.SamplesBefore(plan.ChunksFor(samples))));
 }
 
 std::optional<double> Answer::ModelErrorOf(std::string_view name, bool is_first) const {
@@ -68,10 +59,9 @@ PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters
       answer_{.model = Sampled(spec.model)},
       engine_(EngineFor(spec)),
       plan_(plan),
-      expected_chunks_(ExpectedChunks(spec, parameters, plan)),
+      expected_samples_(SamplesExpected(spec, parameters)),
       aim_(&AimOf(spec)),
       tolerance_(spec.target.tolerance),
-      least_samples_(LeastSamples(spec, parameters, plan)),
       random_{spec.seed, PointStream(spec, parameters)} {}
 
 std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpec& spec,
@@ -124,13 +114,12 @@ double RelativeError(const Estimate& estimate) {
   return *estimate.standard_error / std::fabs(estimate.value);
 }
 
-bool MeetsTolerance(const Estimate& estimate, double tolerance) {
-  return RelativeError(estimate) <= tolerance;
-}
-
+// A value that is many times too large by chance, such as that of a current between nearly equal
+// temperatures, has a small relative error. So a tolerance is not judged with few samples.
 bool PointExperiment::ReachesTolerance(const BlockResult& merged) const {
-  return tolerance_ && static_cast<double>(merged.samples) >= least_samples_ &&
-         MeetsTolerance(FirstEstimate(merged), *tolerance_);
+  constexpr double kLeastShare = 0.25;
+  return tolerance_ && static_cast<double>(merged.samples) >= kLeastShare * expected_samples_ &&
+         RelativeError(FirstEstimate(merged)) <= *tolerance_;
 }
 
 }  // namespace ballpiston

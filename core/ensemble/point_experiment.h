@@ -48,9 +48,6 @@ struct Answer {
 // The relative standard error; infinite if there is none.
 double RelativeError(const Estimate& estimate);
 
-// Whether the estimate's relative standard error, if it has one, is at most `tolerance`.
-bool MeetsTolerance(const Estimate& estimate, double tolerance);
-
 class PointExperiment {
  public:
   virtual ~PointExperiment() = default;
@@ -68,7 +65,7 @@ class PointExperiment {
   // If the plan has no samples, the answer needs no block, and `merged` is empty.
   const ChunkPlan& plan() const { return plan_; }
   // The chunks that the target is expected to take: with a tolerance fewer than the plan has.
-  uint64_t expected_chunks() const { return expected_chunks_; }
+  uint64_t expected_chunks() const { return plan_.ChunksFor(expected_samples_); }
   const PointParameters& parameters() const { return parameters_; }
   const Answer& answer() const { return answer_; }
 
@@ -125,10 +122,9 @@ class PointExperiment {
   Answer answer_;
   Engine engine_;
   ChunkPlan plan_;
-  uint64_t expected_chunks_;
+  double expected_samples_;  // that reach the tolerance; infinite without one
   const AimedEstimate* aim_;
   std::optional<double> tolerance_;
-  double least_samples_;  // with fewer a tolerance is not judged
   RandomStream random_;
   BlockResult empty_;
   std::vector<Measurement> table_;
@@ -143,7 +139,8 @@ std::unique_ptr<PointExperiment> CreateAs(const EnsembleSpec& spec, const PointP
 // The largest number of samples that the target requests at a point; 1 to kMaxSamples.
 uint64_t SamplesAskedFor(const Target& target, const Forecast& forecast);
 
-// The time of the point on one core at nominal speed, by spec.model. Requires a model that samples.
-double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point);
+// The time of this many samples of the point, or of all if the target asks for fewer, on one core
+// at nominal speed, by spec.model. Requires a model that samples.
+double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point, double samples);
 
 }  // namespace ballpiston

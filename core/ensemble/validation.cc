@@ -87,7 +87,7 @@ void CheckLists(const EnsembleSpec& spec, Found& found) {
 
 void CheckEachValue(const Parameter& parameter, const std::vector<double>& values, Found& found) {
   for (size_t i = 0; i < values.size(); ++i) {
-    const absl::Status status = parameter.validate(values[i]);
+    const absl::Status status = parameter.Validate(values[i]);
     if (status.ok()) continue;
     found.push_back(
         {absl::StrFormat("%s[%d]", ListOf(parameter), i), std::string(status.message())});
@@ -200,7 +200,7 @@ void CheckModel(const EnsembleSpec& spec, Found& found) {
   if (!spec.experiment->IsAnsweredBy(spec.model)) {
     found.push_back({"model", absl::StrCat("is ", Name(spec.model), ", which cannot answer ",
                                            spec.experiment->name,
-                                           "; permitted: ", NamesOf(spec.experiment->models))});
+                                           "; permitted: ", NamesOf(spec.experiment->models()))});
   }
   if (spec.precision == Precision::kSingle && spec.model != Model::kAuto &&
       spec.model != Model::kBilliard) {

@@ -1,7 +1,6 @@
-// The list of all experiments. Each row is defined in its experiment's file.
+// The rows of all experiments. Each row is defined in its experiment's file; AllExperiments of
+// ensemble/experiment_kind.h lists them.
 #pragma once
-
-#include <array>
 
 #include "core/ensemble/experiment_kind.h"
 
@@ -16,9 +15,5 @@ extern const ExperimentKind kGasEquilibrium;
 extern const ExperimentKind kGasConduction;
 extern const ExperimentKind kLyapunov;
 extern const ExperimentKind kGasLyapunov;
-
-inline constexpr std::array kAllExperiments = {
-    &kEquilibrium,    &kConditionalMeanFreeTime, &kFirstHit, &kEnergyRelaxation, &kMarkovProperty,
-    &kGasEquilibrium, &kGasConduction,           &kLyapunov, &kGasLyapunov};
 
 }  // namespace ballpiston

@@ -223,7 +223,6 @@ constinit const ExperimentKind kEnergyRelaxation = {
     .name = "energy-relaxation",
     .number = 4,
     .parameters = kParametersOfRelaxation,
-    .models = kModelsOfRelaxation,
     .aims = kAimsOfRelaxation,
     .create = CreateAs<EnergyRelaxationExperiment>,
     .check_grid = CheckPairGrid,

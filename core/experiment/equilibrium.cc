@@ -97,7 +97,6 @@ constexpr AimedEstimate kAimsOfEquilibrium[] = {{.name = kNamesOfTimes[kBallPist
 constinit const ExperimentKind kEquilibrium = {.name = "equilibrium",
                                                .number = 1,
                                                .parameters = kPairAlone,
-                                               .models = kModelsOfEquilibrium,
                                                .aims = kAimsOfEquilibrium,
                                                .create = CreateAs<EquilibriumExperiment>,
                                                .check_grid = CheckPairGrid,

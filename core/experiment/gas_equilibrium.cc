@@ -474,7 +474,6 @@ constexpr AimedEstimate kAimsOfGasEquilibrium[] = {
 constinit const ExperimentKind kGasEquilibrium = {.name = "gas-equilibrium",
                                                   .number = 6,
                                                   .parameters = kParametersOfAPeriodicGas,
-                                                  .models = kModelsOfGasEquilibrium,
                                                   .aims = kAimsOfGasEquilibrium,
                                                   .create = CreateAs<GasEquilibrium>,
                                                   .check_grid = CheckEquilibriumGrid,

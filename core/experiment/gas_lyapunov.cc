@@ -289,7 +289,6 @@ constexpr AimedEstimate kAimsOfGasLyapunov[] = {
 constinit const ExperimentKind kGasLyapunov = {.name = "gas-lyapunov",
                                                .number = 9,
                                                .parameters = kParametersOfAPeriodicGas,
-                                               .models = kBilliards,
                                                .aims = kAimsOfGasLyapunov,
                                                .create = CreateAs<GasLyapunov>,
                                                .check_grid = CheckCells,

@@ -178,7 +178,6 @@ constexpr AimedEstimate kAimsOfLyapunov[] = {
 constinit const ExperimentKind kLyapunov = {.name = "lyapunov",
                                             .number = 8,
                                             .parameters = kPairAlone,
-                                            .models = kBilliards,
                                             .aims = kAimsOfLyapunov,
                                             .create = CreateAs<LyapunovExperiment>,
                                             .check_grid = CheckPairGrid,

@@ -126,7 +126,6 @@ constexpr AimedEstimate kAimsOfMarkovProperty[] = {{.name = "memory_correlation"
 constinit const ExperimentKind kMarkovProperty = {.name = "markov-property",
                                                   .number = 5,
                                                   .parameters = kPairAlone,
-                                                  .models = kModelsOfMarkovProperty,
                                                   .aims = kAimsOfMarkovProperty,
                                                   .create = CreateAs<MarkovPropertyExperiment>,
                                                   .check_grid = CheckPairGrid,

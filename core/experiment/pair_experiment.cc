@@ -56,7 +56,7 @@ std::string PermittedWith(const EnsembleSpec& spec) {
 std::string OtherModels(const EnsembleSpec& spec) {
   if (spec.experiment == nullptr) return "";  // a trace belongs to no experiment
   std::vector<absl::string_view> names;
-  for (const Model model : spec.experiment->models) {
+  for (const Model model : spec.experiment->models()) {
     if (!IsABilliard(model)) names.push_back(Name(model));
   }
   if (names.empty()) return absl::StrCat("; no other model answers ", spec.experiment->name);

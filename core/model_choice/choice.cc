@@ -25,10 +25,6 @@ double HitsOf(const PointParameters& point, double orbits) {
 // lasts.
 constexpr double kMostHitsOfAPilot = 1e13;
 
-double HitsOfPilot(const PilotPlace& place) {
-  return HitsOf(PointOf(place), static_cast<double>(kPilotOrbits));
-}
-
 // The billiard as the answer; `why` is the reason that no cheaper model answers.
 Answer Billiard(const Question& question, absl::string_view why) {
   const std::optional<double> error = question.ModelErrorOf(Model::kBilliard);
@@ -36,20 +32,15 @@ Answer Billiard(const Question& question, absl::string_view why) {
 }
 
 // The reason why no pilot is needed; empty if a pilot is needed.
-std::string WithoutAPilot(const Question& question, double expected) {
+std::string WithoutAPilot(const Question& question, const PilotPlace& place) {
   const double tolerance = *question.target().tolerance;
-  const PilotPlace place = PilotPlaceFor(question.point());
-  if (expected > tolerance) {
-    return absl::StrCat("the limit's error, up to ", Rounded(expected),
-                        ", is beyond the tolerance");
-  }
   const Pilot predicted = PredictedPilot(place);
   const Pilot at_best = {.difference = 0, .standard_error = predicted.standard_error};
   if (LimitErrorBound(at_best, place, question.point()) > tolerance) {
     return "a pilot could not establish the limit's error to this tolerance";
   }
   const double samples = question.ScatterBy(Model::kBilliard).SamplesFor(tolerance);
-  if (HitsOf(question.point(), samples) < HitsOfPilot(place)) {
+  if (HitsOf(question.point(), samples) < HitsOf(place, kPilotOrbits)) {
     return "the billiard reaches the tolerance before a pilot would establish the limit's error";
   }
   return "";
@@ -67,12 +58,14 @@ Answer ByItsBound(const Question& question, double error) {
 
 std::optional<Answer> ByTolerance(const Question& question, double expected,
                                   const PilotSource& pilots) {
-  if (!question.HasPilots()) return ByItsBound(question, expected);
-  if (const std::string why = WithoutAPilot(question, expected); !why.empty()) {
-    return Billiard(question, why);
+  if (!question.HasPilots() || !question.IsWithinTolerance(expected)) {
+    return ByItsBound(question, expected);
   }
   const PilotPlace place = PilotPlaceFor(question.point());
-  if (HitsOfPilot(place) > kMostHitsOfAPilot) return ByItsBound(question, expected);
+  if (const std::string why = WithoutAPilot(question, place); !why.empty()) {
+    return Billiard(question, why);
+  }
+  if (HitsOf(place, kPilotOrbits) > kMostHitsOfAPilot) return ByItsBound(question, expected);
   const std::optional<Pilot> pilot = pilots(place);
   if (!pilot) return std::nullopt;
   const double error = LimitErrorBound(*pilot, place, question.point());

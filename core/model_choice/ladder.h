@@ -63,22 +63,18 @@ struct Ladder {
 Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine,
                  const PilotSource& pilots);
 
-// Finds rho and delta outside of the billiard's domain (billiard/billiard_domain.h), if AUTO has to
-// choose the billiard at a point outside of it. The spec must have no violations.
-std::vector<FieldViolation> DomainViolations(const EnsembleSpec& spec);
-
-// Finds a tolerance that the answering model cannot reach: a tolerance below the model's own error,
-// or below the statistical error of the largest permitted number of samples, or where the estimate
-// has no relative error. The limit's error counts for the spectrum, and for `markov` where pilots
-// can check it; elsewhere the tolerance of `markov` is that of its samples.
-std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec);
-
 // No machine computes longer for a point than this, in seconds at nominal speed.
 inline constexpr double kMostSeconds = 1e10;
 
-// Finds a point that takes longer. A budget limits the time of each point. The spec must have no
-// other violations.
-std::vector<FieldViolation> TimeViolations(const EnsembleSpec& spec);
+// Finds what the answering model cannot do. The spec must have no violations. The first of these:
+//   rho and delta outside of the billiard's domain (billiard/billiard_domain.h), if AUTO has to
+//     choose the billiard at a point outside of it
+//   a tolerance that the model cannot reach: below the model's own error, or below the statistical
+//     error of the largest permitted number of samples, or where the estimate has no relative
+//     error. The limit's error counts for the spectrum, and for `markov` where pilots can check it;
+//     elsewhere the tolerance of `markov` is that of its samples
+//   a point that takes longer than kMostSeconds. A budget limits the time of each point
+std::vector<FieldViolation> AnswerViolations(const EnsembleSpec& spec);
 
 // Finds what this machine cannot do: a question that needs more memory, and a budget that ends
 // before the first samples of a point. The spec must have no other violations.

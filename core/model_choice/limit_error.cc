@@ -22,26 +22,18 @@ constexpr double kPilotsShareOfTheBound = 0.3;
 constexpr double kWhereItScales = 4;
 
 EnsembleSpec PilotSpec(const PilotPlace& place) {
-  EnsembleSpec spec = {.experiment = &kEnergyRelaxation,
-                       .grid = {{kRho, {place.rho}}, {kDelta, {place.delta}}},
+  return OnePointSpec({.experiment = &kEnergyRelaxation,
                        .target = {.samples = kPilotOrbits},
-                       .model = Model::kBilliard,
-                       .purpose = Purpose::kPilot};
-  if (place.epsilon) spec.grid[kEpsilon] = {*place.epsilon};
-  return spec;
+                       .purpose = Purpose::kPilot},
+                      place, Model::kBilliard);
 }
 
 }  // namespace
 
-PointParameters PointOf(const PilotPlace& place) {
-  return {{kRho, place.rho}, {kDelta, place.delta}, {kEpsilon, place.epsilon}};
-}
-
 PilotPlace PilotPlaceFor(const PointParameters& point) {
-  PilotPlace place = {point[kRho], point[kDelta], point.Find(kEpsilon)};
-  PilotPlace cheap = place;
-  cheap.delta = std::max(place.delta, kPilotsShareOfTheBound * PairDeltaBound(place.rho));
-  return ExpectedLimitError(PointOf(cheap)) < kWhereItScales ? cheap : place;
+  PilotPlace cheap = point;
+  cheap.Set(kDelta, std::max(point[kDelta], kPilotsShareOfTheBound * PairDeltaBound(point[kRho])));
+  return ExpectedLimitError(cheap) < kWhereItScales ? cheap : point;
 }
 
 std::unique_ptr<const PointExperiment> PilotExperiment(const PilotPlace& place) {
@@ -56,27 +48,26 @@ Pilot PilotOf(const PointExperiment& experiment, const BlockResult& merged) {
 }
 
 double SecondsOfPilot(const PilotPlace& place, const MachineRates& rates) {
-  const SamplingCost cost = CostOfSampling(PilotSpec(place), PointOf(place), rates);
+  const SamplingCost cost = CostOfSampling(PilotSpec(place), place, rates);
   return cost.Of(static_cast<double>(kPilotOrbits), 1);
 }
 
 Pilot PredictedPilot(const PilotPlace& place) {
-  const PointParameters point = PointOf(place);
-  const Scatter scatter = ScatterOf(PilotSpec(place), point);
-  return {.difference = ExpectedLimitError(point),
+  const Scatter scatter = ScatterOf(PilotSpec(place), place);
+  return {.difference = ExpectedLimitError(place),
           .standard_error = scatter.error / std::sqrt(static_cast<double>(kPilotOrbits)),
           .predicted = true};
 }
 
 double LimitErrorBound(const Pilot& pilot, const PilotPlace& place, const PointParameters& point) {
   const double there = std::fabs(pilot.difference) + 2 * pilot.standard_error;
-  return std::max(there * point[kDelta] / place.delta, ExpectedLimitError(point));
+  return std::max(there * point[kDelta] / place[kDelta], ExpectedLimitError(point));
 }
 
 std::string FoundBy(const Pilot& pilot, const PilotPlace& place) {
   return absl::StrCat(
       pilot.predicted ? "expected of a pilot at delta = " : "two sigma of a pilot at delta = ",
-      absl::StrFormat("%.2g", place.delta));
+      absl::StrFormat("%.2g", place[kDelta]));
 }
 
 }  // namespace ballpiston

@@ -13,7 +13,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "core/ensemble/ensemble_spec.h"
@@ -22,16 +21,8 @@
 
 namespace ballpiston {
 
-// A pilot's place. Several deltas may share one.
-struct PilotPlace {
-  double rho = 0;
-  double delta = 0;
-  std::optional<double> epsilon = {};
-
-  friend auto operator<=>(const PilotPlace&, const PilotPlace&) = default;
-};
-
-PointParameters PointOf(const PilotPlace& place);
+// A pilot's place: a point of energy-relaxation. Several points may share one.
+using PilotPlace = PointParameters;
 
 inline constexpr int64_t kPilotOrbits = 65536;
 

@@ -1,6 +1,7 @@
 // The violations of ladder.h: what the answering model or the machine cannot do.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -20,30 +21,6 @@ constexpr double kClosedFormError = kMeanFreeTimeRelativeError + kConditionalRat
 // Not below x: rounding to two digits lowers a number by at most 4.8 %.
 std::string RoundedUp(double x) { return Rounded(1.05 * x); }
 
-// The largest model error of any point, if a pilot can check it. For a model that samples, at least
-// the statistical error of the largest permitted number of samples.
-double LeastTolerance(const EnsembleSpec& spec) {
-  if (IsAnsweredByClosedForm(spec)) return kClosedFormError;
-  double least = 0;
-  for (size_t i = 0; i < PointCount(spec); ++i) {
-    const PointParameters point = PointAt(spec, i);
-    const Question question(spec, point, Machine());
-    if (spec.model != Model::kMarkov || question.HasPilots()) {
-      least = std::max(least, question.ModelErrorOf(spec.model).value_or(0));
-    }
-    if (spec.model == Model::kSpectrum) continue;
-    const double sampled = ScatterOf(spec, point).ErrorOf(static_cast<double>(kMaxSamples));
-    if (std::isfinite(sampled)) least = std::max(least, sampled);
-  }
-  return least;
-}
-
-// The model that is expected to answer, without pilots.
-Model ExpectedModel(const EnsembleSpec& spec, const PointParameters& point) {
-  if (spec.model != Model::kAuto) return spec.model;
-  return ChooseAnswer(spec, point, Machine(), PredictedPilot)->model;
-}
-
 // The names and values of the parameters of a point.
 std::string ParametersText(const PointParameters& point) {
   std::string text;
@@ -56,30 +33,74 @@ std::string ParametersText(const PointParameters& point) {
   return text;
 }
 
-// A point where a relative error is out of reach: of an estimate that has none, or because the
-// largest permitted number of samples has no error. The first one.
-std::vector<FieldViolation> PointsWithoutAnError(const EnsembleSpec& spec) {
-  const AimedEstimate& aim = AimOf(spec);
-  for (size_t i = 0; i < PointCount(spec); ++i) {
-    const PointParameters point = PointAt(spec, i);
-    const Model model = ExpectedModel(spec, point);
-    if (model == Model::kClosedForm) continue;
-    const Scatter scatter = aim.scatter(model, point);
-    const double needed = TakesSamples(model) ? scatter.SamplesForAnError() : 0;
-    const bool has_error = std::isfinite(scatter.error) && std::isfinite(needed);
-    if (has_error && needed <= static_cast<double>(kMaxSamples)) continue;
-    const std::string reason =
-        has_error ? absl::StrFormat(
-                        "an error needs %.2g samples, because the events that determine "
-                        "the mean are rare; permitted in this case: samples, up to %d",
-                        needed, kMaxSamples)
-                  : absl::StrCat("no number of samples gives ", aim.name,
-                                 " a relative error: ", aim.no_error);
-    return {{"target.tolerance",
-             absl::StrFormat("is %s, but at %s %s", NumberText(*spec.target.tolerance),
-                             ParametersText(point), reason)}};
+// The answer at a point, as far as it is expected without pilots.
+struct Expected {
+  PointParameters point;
+  Model model;
+  Scatter scatter = {};  // if the spec has a tolerance
+};
+
+// A model is chosen only if it decides whether the point is refused: without a tolerance AUTO
+// answers by the billiard, or without samples.
+Expected ExpectedAt(const EnsembleSpec& spec, const PointParameters& point) {
+  Expected expected = {point, Sampled(spec.model)};
+  if (spec.model == Model::kAuto && (spec.target.tolerance || !IsSoundForBilliard(spec, point))) {
+    expected.model = ChooseAnswer(spec, point, Machine(), PredictedPilot)->model;
   }
-  return {};
+  if (spec.target.tolerance && expected.model != Model::kClosedForm) {
+    expected.scatter = AimOf(spec).scatter(expected.model, point);
+  }
+  return expected;
+}
+
+std::vector<FieldViolation> BeyondTheDomain(const EnsembleSpec& spec) {
+  EnsembleSpec by_billiard = spec;
+  by_billiard.model = Model::kBilliard;
+  std::vector<FieldViolation> found;
+  CheckBilliardDomain(by_billiard, found);
+  return found;
+}
+
+// If a relative error is out of reach: of an estimate that has none, or because the largest
+// permitted number of samples has no error.
+std::optional<FieldViolation> WithoutAnError(const EnsembleSpec& spec, const Expected& expected) {
+  const auto& [point, model, scatter] = expected;
+  const double needed = TakesSamples(model) ? scatter.SamplesForAnError() : 0;
+  const bool has_error = std::isfinite(scatter.error) && std::isfinite(needed);
+  if (has_error && needed <= static_cast<double>(kMaxSamples)) return std::nullopt;
+  const std::string reason =
+      has_error ? absl::StrFormat(
+                      "an error needs %.2g samples, because the events that determine "
+                      "the mean are rare; permitted in this case: samples, up to %d",
+                      needed, kMaxSamples)
+                : absl::StrCat("no number of samples gives ", AimOf(spec).name,
+                               " a relative error: ", AimOf(spec).no_error);
+  return FieldViolation{"target.tolerance",
+                        absl::StrFormat("is %s, but at %s %s", NumberText(*spec.target.tolerance),
+                                        ParametersText(point), reason)};
+}
+
+// The model's error, if a pilot can check it. For a model that samples, at least the statistical
+// error of the largest permitted number of samples.
+double LeastTolerance(const EnsembleSpec& spec, const Expected& expected) {
+  const auto& [point, model, scatter] = expected;
+  const Question question(spec, point, Machine());
+  const bool is_checked = model != Model::kMarkov || question.HasPilots();
+  const double of_model = is_checked ? question.ModelErrorOf(model).value_or(0) : 0;
+  const double of_samples =
+      TakesSamples(model) ? scatter.ErrorOf(static_cast<double>(kMaxSamples)) : 0;
+  return std::isfinite(of_samples) ? std::max(of_model, of_samples) : of_model;
+}
+
+FieldViolation BelowReach(const EnsembleSpec& spec, double least) {
+  absl::string_view other;
+  if (IsOfTheLimit(spec.model)) other = ", or model auto or billiard";
+  if (spec.precision == Precision::kSingle) other = ", or precision double";
+  const std::string permitted = least < 1 ? absl::StrCat("tolerance >= ", RoundedUp(least))
+                                          : "samples or a budget in place of a tolerance";
+  return {"target.tolerance",
+          absl::StrCat("is ", NumberText(*spec.target.tolerance), ", below what model ",
+                       Name(spec.model), " can reach; permitted: ", permitted, other)};
 }
 
 // A number of samples or collisions with one digit that takes at most kMostSeconds; 0 if there is
@@ -91,7 +112,7 @@ int64_t PermittedCount(EnsembleSpec spec, const PointParameters& point,
     const double unit = std::pow(10, std::floor(std::log10(guess)));
     const auto count = static_cast<int64_t>(std::floor(guess / unit) * unit);
     spec.target.*kind = count;
-    if (NominalSeconds(spec, point) <= kMostSeconds) return count;
+    if (NominalSeconds(spec, point, HUGE_VAL) <= kMostSeconds) return count;
   }
   return 0;
 }
@@ -119,17 +140,29 @@ FieldViolation TooLong(const EnsembleSpec& spec, const PointParameters& point, d
 
 }  // namespace
 
-std::vector<FieldViolation> TimeViolations(const EnsembleSpec& spec) {
-  if (NeedsNoSamples(spec) || spec.target.budget_seconds) return {};
+std::vector<FieldViolation> AnswerViolations(const EnsembleSpec& spec) {
+  const std::optional<double>& tolerance = spec.target.tolerance;
+  const bool takes_time = !NeedsNoSamples(spec) && !spec.target.budget_seconds;
+  double least = IsAnsweredByClosedForm(spec) ? kClosedFormError : 0;
+  std::optional<FieldViolation> without_an_error, too_long;  // the first ones
   for (size_t i = 0; i < PointCount(spec); ++i) {
-    const PointParameters point = PointAt(spec, i);
-    // Without a tolerance AUTO takes samples of the billiard.
-    const Model model = spec.target.tolerance ? ExpectedModel(spec, point) : Sampled(spec.model);
-    if (!TakesSamples(model)) continue;
+    const Expected expected = ExpectedAt(spec, PointAt(spec, i));
+    const auto& [point, model, scatter] = expected;
+    if (model == Model::kClosedForm) continue;
+    if (spec.model == Model::kAuto && IsABilliard(model) && !IsSoundForBilliard(spec, point)) {
+      return BeyondTheDomain(spec);
+    }
+    if (tolerance && !without_an_error) without_an_error = WithoutAnError(spec, expected);
+    if (tolerance) least = std::max(least, LeastTolerance(spec, expected));
+    if (!takes_time || !TakesSamples(model) || too_long) continue;
+    const double needed = tolerance ? scatter.SamplesFor(*tolerance) : HUGE_VAL;
     const EnsembleSpec one = OnePointSpec(spec, point, model);
-    const double seconds = NominalSeconds(one, point);
-    if (!(seconds <= kMostSeconds)) return {TooLong(one, point, seconds)};
+    const double seconds = NominalSeconds(one, point, needed);
+    if (!(seconds <= kMostSeconds)) too_long = TooLong(one, point, seconds);
   }
+  if (without_an_error) return {*without_an_error};
+  if (tolerance && *tolerance < least) return {BelowReach(spec, least)};
+  if (too_long) return {*too_long};
   return {};
 }
 
@@ -180,34 +213,6 @@ std::vector<FieldViolation> MachineViolations(const EnsembleSpec& spec, const Ma
   CheckMemory(spec, machine, found);
   CheckBudget(spec, machine, found);
   return found;
-}
-
-std::vector<FieldViolation> DomainViolations(const EnsembleSpec& spec) {
-  std::vector<FieldViolation> found;
-  if (spec.model != Model::kAuto) return found;
-  for (size_t i = 0; i < PointCount(spec) && found.empty(); ++i) {
-    const PointParameters point = PointAt(spec, i);
-    if (IsSoundForBilliard(spec, point) || !IsABilliard(ExpectedModel(spec, point))) continue;
-    EnsembleSpec by_billiard = spec;
-    by_billiard.model = Model::kBilliard;
-    CheckBilliardDomain(by_billiard, found);
-  }
-  return found;
-}
-
-std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec) {
-  if (!spec.target.tolerance) return {};
-  if (std::vector<FieldViolation> found = PointsWithoutAnError(spec); !found.empty()) return found;
-  const double tolerance = *spec.target.tolerance, least = LeastTolerance(spec);
-  if (!(tolerance < least)) return {};
-  absl::string_view other;
-  if (IsOfTheLimit(spec.model)) other = ", or model auto or billiard";
-  if (spec.precision == Precision::kSingle) other = ", or precision double";
-  const std::string permitted = least < 1 ? absl::StrCat("tolerance >= ", RoundedUp(least))
-                                          : "samples or a budget in place of a tolerance";
-  return {{"target.tolerance",
-           absl::StrCat("is ", NumberText(tolerance), ", below what model ", Name(spec.model),
-                        " can reach; permitted: ", permitted, other)}};
 }
 
 }  // namespace ballpiston

@@ -35,7 +35,7 @@ void ReadShortfall(Database& database, const JobRecord& record, const EnsembleSp
   ReadResults(database, record.sequence, 0, Details::kLeftOut, [&](const PointRow& row) {
     const v1::PointResult result = database.ValueOf(ResultFromBytes(row.result));
     const Estimate reached = FirstEstimateOf(result);
-    if (MeetsTolerance(reached, *spec.target.tolerance)) return true;
+    if (RelativeError(reached) <= *spec.target.tolerance) return true;
     const auto point = static_cast<size_t>(row.point);
     shortfall = {point, ToleranceNotReached(spec, point, reached)};
     return false;

@@ -264,7 +264,7 @@ void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun
   open.fold().Finish();
   if (!target.tolerance) return;
   const Estimate reached = open.experiment()->FirstEstimate(open.fold().Merged());
-  if (MeetsTolerance(reached, *target.tolerance)) return;
+  if (RelativeError(reached) <= *target.tolerance) return;
   std::optional<Shortfall>& first = request_.shortfall;
   if (first && first->point < lease.point) return;
   first = {lease.point, ToleranceNotReached(*spec_, lease.point, reached)};

@@ -174,10 +174,7 @@ void AddUnknownFields(const char* path, const google::protobuf::Message& message
 
 Violations CoreViolations(const EnsembleSpec& spec) {
   Violations found = ballpiston::Violations(spec);
-  if (found.empty()) found = DomainViolations(spec);
-  if (found.empty()) found = ToleranceViolations(spec);
-  if (found.empty()) found = TimeViolations(spec);
-  return found;
+  return found.empty() ? AnswerViolations(spec) : found;
 }
 
 }  // namespace

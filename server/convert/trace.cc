@@ -66,7 +66,7 @@ void CheckTemperature(const v1::TraceOrbitRequest& request, Violations& violatio
     violations.push_back(
         {"temperature", "is set without cells; a pair has the energy 1/2, not a temperature"});
   } else {
-    Add("temperature", ValidateTemperature(request.temperature()), violations);
+    Add("temperature", kTemperature.Validate(request.temperature()), violations);
   }
 }
 

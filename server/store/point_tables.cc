@@ -105,8 +105,8 @@ void InsertPilot(Database& database, const std::string& engine_version, const Pi
   database.Run(
       "INSERT INTO pilots (engine_version, rho, delta, epsilon, difference, standard_error)"
       " VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
-      engine_version, place.rho, place.delta, place.epsilon.value_or(kNoEpsilon), pilot.difference,
-      pilot.standard_error);
+      engine_version, place[kRho], place[kDelta], place.Find(kEpsilon).value_or(kNoEpsilon),
+      pilot.difference, pilot.standard_error);
 }
 
 std::optional<Pilot> FindPilot(Database& database, const std::string& engine_version,
@@ -114,7 +114,7 @@ std::optional<Pilot> FindPilot(Database& database, const std::string& engine_ver
   Query query = database.Select(
       "SELECT difference, standard_error FROM pilots WHERE engine_version = ? AND rho = ?"
       " AND delta = ? AND epsilon = ?",
-      engine_version, place.rho, place.delta, place.epsilon.value_or(kNoEpsilon));
+      engine_version, place[kRho], place[kDelta], place.Find(kEpsilon).value_or(kNoEpsilon));
   if (!query.Next()) return std::nullopt;
   Pilot pilot;
   query.ReadInto(pilot.difference, pilot.standard_error);

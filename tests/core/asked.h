@@ -75,7 +75,7 @@ inline void SetPart(EnsembleSpec& spec, const std::string& name, const std::stri
 inline EnsembleSpec Asked(const std::string& question) {
   const std::vector<std::string> words = absl::StrSplit(question, ' ');
   EnsembleSpec spec;
-  for (const ExperimentKind* experiment : kAllExperiments) {
+  for (const ExperimentKind* experiment : AllExperiments()) {
     if (experiment->name == words[0]) spec = OnePointOf(experiment);
   }
   EXPECT_NE(spec.experiment, nullptr) << "an unknown experiment: " << words[0];

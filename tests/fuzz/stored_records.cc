@@ -90,7 +90,7 @@ void CheckShortfall(const v1::PointResult& result, const std::string& bytes) {
   constexpr double kTolerance = 0.01;
   const EnsembleSpec spec = {.target = {.tolerance = kTolerance, .budget_seconds = 1.0}};
   const Estimate reached = server::FirstEstimateOf(result);
-  if (MeetsTolerance(reached, kTolerance)) return;
+  if (RelativeError(reached) <= kTolerance) return;
   RequireSendable(server::ToleranceNotReached(spec, 0, reached), bytes);
 }
 

@@ -74,7 +74,7 @@ std::optional<EnsembleSpec> ByModel(const EnsembleSpec& question, Model model, u
 std::vector<v1::PointResult> Answers(const EnsembleSpec& question, uint64_t round,
                                      const Machine& machine, double seconds) {
   std::vector<v1::PointResult> answers;
-  for (const Model model : question.experiment->models) {
+  for (const Model model : question.experiment->models()) {
     const auto spec = ByModel(question, model, round, machine, seconds);
     if (!spec) continue;
     const auto answer = ChooseAnswer(*spec, PointAt(*spec, 0), machine, NoPilot);

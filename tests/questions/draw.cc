@@ -198,7 +198,7 @@ class Drawing {
   Drawing(uint64_t seed, uint64_t number, double most_seconds)
       : dice_(seed, number),
         most_seconds_(most_seconds),
-        experiment_(*kAllExperiments[dice_.Below(kAllExperiments.size())]) {}
+        experiment_(*AllExperiments()[dice_.Below(AllExperiments().size())]) {}
 
   Question Draw() {
     spec_.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(experiment_.number));
@@ -248,7 +248,7 @@ class Drawing {
     if (dice_.Chance(0.65)) {
       spec_.set_model(server::ModelMessage(
           dice_.Chance(0.95)
-              ? dice_.Pick<Model>({experiment_.models.begin(), experiment_.models.end()})
+              ? dice_.Pick<Model>({experiment_.models().begin(), experiment_.models().end()})
               : kLadder[dice_.Below(std::size(kLadder))]));
     } else {
       spec_.set_verify(dice_.Chance(0.3));

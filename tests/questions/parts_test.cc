@@ -121,7 +121,7 @@ TEST(Draw, AsksEveryExperimentByEveryModelWithEveryTarget) {
     ++precisions[question.spec.precision()];
     permitted += server::CheckSpec(question.spec).violations.empty();
   }
-  EXPECT_THAT(experiments, SizeIs(std::size(kAllExperiments)));
+  EXPECT_THAT(experiments, SizeIs(AllExperiments().size()));
   EXPECT_THAT(models, SizeIs(6));
   EXPECT_THAT(targets, SizeIs(4));
   EXPECT_THAT(precisions, SizeIs(2));

@@ -200,7 +200,7 @@ TEST(EnsembleSpec, PrecisionAndVerifyAreForSomeModels) {
 // Beyond this domain rounding makes the billiard wrong (billiard/billiard_domain.h).
 TEST(EnsembleSpec, BilliardIsRejectedOutsideItsDomain) {
   const double inside = kMaxRho - 1.1e-9, outside = kMaxRho - 0.9e-9;
-  for (const ExperimentKind* experiment : kAllExperiments) {
+  for (const ExperimentKind* experiment : AllExperiments()) {
     SCOPED_TRACE(experiment->name);
     for (const Model model : {Model::kBilliard, Model::kBilliardReference}) {
       EnsembleSpec spec = At(experiment, inside, 1.01e-10);
@@ -227,7 +227,7 @@ TEST(EnsembleSpec, BilliardIsRejectedOutsideItsDomain) {
 
 // Outside of this domain the errors of single precision are unknown (billiard/billiard_domain.h).
 TEST(EnsembleSpec, SinglePrecisionIsRejectedOutsideItsMeasuredDomain) {
-  for (const ExperimentKind* experiment : kAllExperiments) {
+  for (const ExperimentKind* experiment : AllExperiments()) {
     if (IsOfAGas(experiment)) continue;  // it has no single precision
     EnsembleSpec spec = OnePointOf(experiment);
     spec.precision = Precision::kSingle;

@@ -22,19 +22,19 @@ TEST(Parameter, IndexIsThePlaceInTheList) {
 TEST(Parameter, CodesOfShapesAreTheValuesOfCells) {
   for (const char* text :
        {"1", "1000000", "1x1", "1000000x1", "1x1000000", "1000x1000", "1x524288", "524288x1"}) {
-    EXPECT_OK(kCells.validate(CodeOf(ParseGasShape(text).value()))) << text;
+    EXPECT_OK(kCells.Validate(CodeOf(ParseGasShape(text).value()))) << text;
   }
   constexpr double kRow = 0x1p20;  // the code of a lattice without columns
   for (const double value : {0.0, -1.0, 0.5, 12.5, 1e6 + 1, kRow - 1, kRow, kRow + 0.5, 3 * kRow,
                              CodeOf({.columns = 1001, .rows = 1000, .is_lattice = true}),
                              CodeOf({.columns = 1, .rows = 1'000'001, .is_lattice = true}), 0x1p41,
                              0x1p63, 1e300, HUGE_VAL, -HUGE_VAL, std::nan("")}) {
-    EXPECT_THAT(kCells.validate(value),
+    EXPECT_THAT(kCells.Validate(value),
                 StatusIs(absl::StatusCode::kInvalidArgument,
                          HasSubstr("permitted: codes of N or NxM, 1 to 1000000 cells in all")))
         << value;
   }
-  EXPECT_THAT(kCells.validate(0.5).message(), HasSubstr("cells is the code 0.5; "));
+  EXPECT_THAT(kCells.Validate(0.5).message(), HasSubstr("cells is the code 0.5; "));
 }
 
 TEST(Parameter, RangesAreClosedToTheLastBit) {
@@ -46,14 +46,14 @@ TEST(Parameter, RangesAreClosedToTheLastBit) {
       {&kCold, kMinTemperature, kMaxTemperature, "[1e-120, 1e+120]"}};
   for (const auto& [parameter, lower, upper, permitted] : kRanges) {
     for (const double value : {lower, 0.25, upper}) {
-      EXPECT_OK(parameter->validate(value)) << parameter->name;
+      EXPECT_OK(parameter->Validate(value)) << parameter->name;
     }
     for (const double value : {std::nextafter(lower, -HUGE_VAL), std::nextafter(upper, HUGE_VAL),
                                HUGE_VAL, -HUGE_VAL, std::nan("")}) {
-      EXPECT_THAT(parameter->validate(value), StatusIs(absl::StatusCode::kInvalidArgument))
+      EXPECT_THAT(parameter->Validate(value), StatusIs(absl::StatusCode::kInvalidArgument))
           << parameter->name << " " << value;
     }
-    EXPECT_EQ(parameter->validate(-1).message(),
+    EXPECT_EQ(parameter->Validate(-1).message(),
               absl::StrCat(parameter->name, " is -1; permitted: ", permitted));
   }
 }

@@ -57,7 +57,7 @@ TEST(TableOfPoints, HotIsComparedWithTheColdOfItsRow) {
   EXPECT_THAT(Violations(spec), IsEmpty());
   spec.grid[kHot] = {1, 2};
   spec.target = {.tolerance = 0.1};
-  EXPECT_THAT(ToleranceViolations(spec), ElementsAre(OfField("target.tolerance")));
+  EXPECT_THAT(AnswerViolations(spec), ElementsAre(OfField("target.tolerance")));
 }
 
 TEST(TableOfPoints, ColumnsAreEquallyLong) {

@@ -189,7 +189,7 @@ TEST(StandardErrors, PilotWithoutOneGivesNoBound) {
   const PilotPlace place = PilotPlaceFor(PaperPoint(0.1, 0));
   const auto pilot = PilotExperiment(place);
   const Pilot without = PilotOf(*pilot, pilot->EmptyResult());
-  EXPECT_EQ(LimitErrorBound(without, place, PointOf(place)), HUGE_VAL);
+  EXPECT_EQ(LimitErrorBound(without, place, place), HUGE_VAL);
 }
 
 }  // namespace

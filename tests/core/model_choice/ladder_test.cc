@@ -81,8 +81,8 @@ TEST(Ladder, ModelsAreChosenWithAReason) {
 }
 
 TEST(Ladder, ANamedModelAnswersWithAnyError) {
-  for (const ExperimentKind* experiment : kAllExperiments) {
-    for (const Model model : experiment->models) {
+  for (const ExperimentKind* experiment : AllExperiments()) {
+    for (const Model model : experiment->models()) {
       EnsembleSpec spec = OnePointOf(experiment);
       spec.model = model;
       const Answer answer = *Choice(spec);
@@ -112,7 +112,7 @@ TEST(Ladder, APilotRunsOnlyIfItCanDecide) {
       const double error_of_pilot = PredictedPilot(place).standard_error;
       // Pilots that leave the limit just within the tolerance, and just beyond.
       for (const double share : {0.999, 1.001}) {
-        const double there = share * tolerance * place.delta / delta;
+        const double there = share * tolerance * place[kDelta] / delta;
         const Pilot pilot = {.difference = std::max(there - 2 * error_of_pilot, 0.0),
                              .standard_error = error_of_pilot};
         MadeUpPilots pilots(pilot), of_slower(pilot);
@@ -287,7 +287,7 @@ TEST(Ladder, ABudgetDoesNotLetTheLimitMissATolerance) {
   for (const std::optional<double> tolerance : {std::optional<double>(), {0.9}, {0.01}}) {
     EnsembleSpec spec = Relaxation(1.2e-10, {.tolerance = tolerance, .budget_seconds = 1});
     spec.grid[kRho] = {kMaxRho - 1e-10};
-    EXPECT_EQ(DomainViolations(spec).empty(), tolerance != 0.01);
+    EXPECT_EQ(AnswerViolations(spec).empty(), tolerance != 0.01);
   }
 }
 
@@ -386,7 +386,7 @@ TEST(Ladder, SamplesBelowThoseOfAnErrorHaveNoPlannedError) {
   const double needed = scatter.SamplesForAnError();
   EXPECT_GT(needed, 1000);
   EXPECT_GE(scatter.SamplesFor(0.5), needed);
-  EXPECT_THAT(ToleranceViolations(spec), IsEmpty());
+  EXPECT_THAT(AnswerViolations(spec), IsEmpty());
 }
 
 // In one column the conductivity has no scatter but rounding, which never reaches this tolerance.
@@ -445,11 +445,11 @@ TEST(Ladder, AToleranceBelowTheModelsErrorIsRejected) {
          "or precision double"}}) {
     EnsembleSpec spec = Asked(row.question + " delta=0.2");
     spec.target.tolerance = 0.99 * row.least;
-    EXPECT_THAT(ToleranceViolations(spec),
+    EXPECT_THAT(AnswerViolations(spec),
                 ElementsAre(AllOf(Field(&FieldViolation::field, "target.tolerance"),
                                   Field(&FieldViolation::description, HasSubstr(row.text)))));
     spec.target.tolerance = 1.01 * row.least;
-    EXPECT_THAT(ToleranceViolations(spec), IsEmpty());
+    EXPECT_THAT(AnswerViolations(spec), IsEmpty());
   }
   for (const auto& [question, violations] : std::vector<std::pair<const char*, size_t>>{
            {"equilibrium delta=0.2 model=closed_form tolerance=1e-17", 1},
@@ -458,13 +458,16 @@ TEST(Ladder, AToleranceBelowTheModelsErrorIsRejected) {
            {"energy-relaxation delta=0.2 tolerance=1e-5", 0},
            {"energy-relaxation delta=0.2 tolerance=1e-9", 1},
            {"energy-relaxation delta=0.2 tolerance=1e-9 model=billiard_reference", 1},
+           // AUTO answers by the spectrum, which takes no samples.
+           {"energy-relaxation delta=1e-6 tolerance=1e-6", 0},
+           {"energy-relaxation delta=1e-6 tolerance=1e-8 precision=single", 0},
            // The worst point of the grid counts.
            {"energy-relaxation delta=0.01 tolerance=0.01 model=spectrum", 0},
            {"energy-relaxation delta=0.01,0.2 tolerance=0.01 model=spectrum", 1},
            {"energy-relaxation delta=0.01,0.2 model=spectrum", 0}}) {
-    EXPECT_THAT(ToleranceViolations(Asked(question)), SizeIs(violations)) << question;
+    EXPECT_THAT(AnswerViolations(Asked(question)), SizeIs(violations)) << question;
   }
-  EXPECT_THAT(ToleranceViolations(
+  EXPECT_THAT(AnswerViolations(
                   Asked("energy-relaxation delta=1e-8 epsilon=0.5 tolerance=0.5 model=billiard")),
               ElementsAre(Field(
                   &FieldViolation::description,
@@ -485,7 +488,7 @@ TEST(Ladder, AToleranceIsRejectedWhereAnEstimateHasNoRelativeError) {
            {"first-hit epsilon=0", "epsilon = 0,"},
            {"conditional-mean-free-time epsilon=0.1,0 model=billiard", "epsilon = 0 "},
            {"conditional-mean-free-time epsilon=0 verify=yes", "epsilon = 0 "}}) {
-    EXPECT_THAT(ToleranceViolations(Asked(question + " tolerance=0.1")),
+    EXPECT_THAT(AnswerViolations(Asked(question + " tolerance=0.1")),
                 ElementsAre(AllOf(Field(&FieldViolation::field, "target.tolerance"),
                                   Field(&FieldViolation::description,
                                         AllOf(HasSubstr("is 0.1, but at "), HasSubstr(at),
@@ -495,7 +498,7 @@ TEST(Ladder, AToleranceIsRejectedWhereAnEstimateHasNoRelativeError) {
   for (const std::string question :
        {"energy-relaxation epsilon=0,0.12,0.2", "conditional-mean-free-time epsilon=0,0.1",
         "conditional-mean-free-time epsilon=0,0.1 model=closed_form"}) {
-    EXPECT_THAT(ToleranceViolations(Asked(question + " tolerance=0.1")), IsEmpty()) << question;
+    EXPECT_THAT(AnswerViolations(Asked(question + " tolerance=0.1")), IsEmpty()) << question;
   }
 }
 
@@ -504,7 +507,7 @@ TEST(Ladder, AutoNeedsAnotherModelOutsideTheBilliardsDomain) {
   for (const char* question :
        {"equilibrium delta=1e-12", "energy-relaxation delta=1e-12 tolerance=0.01",
         "energy-relaxation delta=1e-12 budget=1", "energy-relaxation delta=0.01"}) {
-    EXPECT_THAT(DomainViolations(Asked(question)), IsEmpty()) << question;
+    EXPECT_THAT(AnswerViolations(Asked(question)), IsEmpty()) << question;
   }
   for (const char* question : {"equilibrium delta=1e-12 verify=yes", "markov-property delta=1e-12",
                                "energy-relaxation delta=1e-12",  // no tolerance: an exact model
@@ -512,7 +515,7 @@ TEST(Ladder, AutoNeedsAnotherModelOutsideTheBilliardsDomain) {
                                // There is no relaxation time, and the limit's error is not known.
                                "energy-relaxation delta=1e-12 epsilon=0.1,0.1667 budget=1"}) {
     EXPECT_THAT(
-        DomainViolations(Asked(question)),
+        AnswerViolations(Asked(question)),
         ElementsAre(AllOf(Field(&FieldViolation::field, "grid.delta[0]"),
                           Field(&FieldViolation::description,
                                 AllOf(HasSubstr("delta is 1e-12"), HasSubstr("delta >= 1e-10"))))))
@@ -526,7 +529,7 @@ TEST(Ladder, ATimeThatNoMachineHasIsRejected) {
   const std::string question = "energy-relaxation model=billiard ";
   for (const std::string target : {"samples=100000", "collisions=1e7", "seed=1"}) {
     const std::string field = target[0] == 'c' ? "target.collisions" : "target.samples";
-    const auto found = TimeViolations(Asked(question + target + " delta=1e-7"));
+    const auto found = AnswerViolations(Asked(question + target + " delta=1e-7"));
     ASSERT_THAT(found, ElementsAre(Field(&FieldViolation::field, field)));
     const std::string& description = found[0].description;
     EXPECT_THAT(description, AllOf(HasSubstr("at rho = "), HasSubstr("delta = 1e-07")));
@@ -534,21 +537,20 @@ TEST(Ladder, ATimeThatNoMachineHasIsRejected) {
     ASSERT_TRUE(std::regex_search(description, permitted, std::regex("there: up to ([0-9]+),")))
         << description;
     const std::string kind = field.substr(field.find('.') + 1);
-    EXPECT_THAT(TimeViolations(Asked(question + kind + "=" + permitted.str(1) + " delta=1e-7")),
+    EXPECT_THAT(AnswerViolations(Asked(question + kind + "=" + permitted.str(1) + " delta=1e-7")),
                 IsEmpty());
-    EXPECT_THAT(TimeViolations(Asked(question + target + " delta=0.01")), IsEmpty());
+    EXPECT_THAT(AnswerViolations(Asked(question + target + " delta=0.01")), IsEmpty());
   }
   // At delta = 1e-10 a collision takes 10^20 wall hits.
-  EXPECT_THAT(TimeViolations(Asked(question + "samples=1000 delta=1e-10")),
+  EXPECT_THAT(AnswerViolations(Asked(question + "samples=1000 delta=1e-10")),
               ElementsAre(Field(&FieldViolation::description, HasSubstr("even one takes longer"))));
-  EXPECT_THAT(TimeViolations(Asked("equilibrium delta=1e-100")), IsEmpty());  // the closed form
+  EXPECT_THAT(AnswerViolations(Asked("equilibrium delta=1e-100")), IsEmpty());  // the closed form
   const std::string gas = "gas-conduction tolerance=0.05 model=markov cells=";
-  EXPECT_THAT(ToleranceViolations(Asked(gas + "100000")), IsEmpty());
-  EXPECT_THAT(TimeViolations(Asked(gas + "100000")), IsEmpty());
+  EXPECT_THAT(AnswerViolations(Asked(gas + "100000")), IsEmpty());
   const Ladder ladder = Planned(Asked(gas + "100000"));
   EXPECT_GT(ladder.Chosen().time, 1e8);
   EXPECT_LE(*ladder.Chosen().statistical_error, 0.05);
-  EXPECT_THAT(TimeViolations(Asked(gas + "1000000")), SizeIs(1));
+  EXPECT_THAT(AnswerViolations(Asked(gas + "1000000")), SizeIs(1));
 }
 
 // A chain of 100 had to wait hours for its first chunk, and one of 300 was refused.

@@ -7,7 +7,7 @@
 namespace ballpiston::server {
 namespace {
 
-const PilotPlace kPlace = {.rho = 0.53, .delta = 0.1};
+const PilotPlace kPlace = {{kRho, 0.53}, {kDelta, 0.1}};
 
 // A pilot takes 200 blocks; a turn here computes 64.
 constexpr uint64_t kBlocksOfATurn = 64;

@@ -65,9 +65,9 @@ TEST_F(StoreTest, TheReaderCannotWrite) {
 }
 
 TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
-  const PilotPlace in_equilibrium = {.rho = 0.53, .delta = 0.1};
-  const PilotPlace at_zero = {.rho = 0.53, .delta = 0.1, .epsilon = 0.0};
-  const PilotPlace from_energy = {.rho = 0.53, .delta = 0.1, .epsilon = 0.25};
+  const PilotPlace in_equilibrium = {{kRho, 0.53}, {kDelta, 0.1}};
+  const PilotPlace at_zero = {{kRho, 0.53}, {kDelta, 0.1}, {kEpsilon, 0.0}};
+  const PilotPlace from_energy = {{kRho, 0.53}, {kDelta, 0.1}, {kEpsilon, 0.25}};
   const std::tuple<std::string, PilotPlace, double> pilots[] = {{"2", in_equilibrium, 0.1},
                                                                 {"2", at_zero, -0.2},
                                                                 {"2", from_energy, 0.3},
@@ -92,8 +92,8 @@ TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
     EXPECT_FALSE(found->predicted);
   }
   EXPECT_FALSE(stored("3", from_energy));
-  EXPECT_FALSE(stored("2", {.rho = 0.53, .delta = 0.2}));
-  EXPECT_FALSE(stored("2", {.rho = 0.54, .delta = 0.1}));
+  EXPECT_FALSE(stored("2", {{kRho, 0.53}, {kDelta, 0.2}}));
+  EXPECT_FALSE(stored("2", {{kRho, 0.54}, {kDelta, 0.1}}));
 }
 
 // SQLite may make an empty log and an index beside the file.

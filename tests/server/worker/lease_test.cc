@@ -112,7 +112,7 @@ TEST(LeaseRecord, EveryQuestionKeepsItsPlanAndItsBits) {
     spec.target = {};
     ExpectComesBack(LeaseOf(spec));
     spec.target.tolerance = 0.1;
-    if (ToleranceViolations(spec).empty()) ExpectComesBack(LeaseOf(spec));
+    if (AnswerViolations(spec).empty()) ExpectComesBack(LeaseOf(spec));
   }
   EnsembleSpec single = SpecOf(kEquilibrium, Model::kBilliard);
   single.precision = Precision::kSingle;

@@ -47,7 +47,7 @@ EnsembleSpec SpecOf(const ExperimentKind& kind, Model model, int64_t samples) {
 std::vector<EnsembleSpec> EverySampledSpec() {
   std::vector<EnsembleSpec> specs;
   for (const ExperimentKind* kind : AllExperiments()) {
-    for (const Model model : kind->models) {
+    for (const Model model : kind->models()) {
       if (Samples(model)) specs.push_back(SpecOf(*kind, model, SamplesOf(*kind)));
     }
   }

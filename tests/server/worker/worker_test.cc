@@ -218,7 +218,7 @@ TEST_F(WorkerTest, StopsAtTheTolerance) {
 // Each lease has a chunk of one group. The next chunk of the group starts from the state that the
 // worker has written.
 TEST_F(WorkerTest, LeasesContinueTheTrajectoriesOfASteadyState) {
-  for (const Model model : kGasConduction.models) {
+  for (const Model model : kGasConduction.models()) {
     const EnsembleSpec spec = SpecOf(kGasConduction, model, 600);
     const auto experiment = PointExperiment::Create(spec, 0);
     const uint64_t groups = experiment->plan().groups();
