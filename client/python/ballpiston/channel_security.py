@@ -78,7 +78,8 @@ def credentials_of(security: ChannelSecurity) -> Any | None:
 
 
 class Token:
-    """The token that calls send. A token file is read once, the own server's token for each call.
+    """The token that calls send. A token file is read once, that of the user's own server for each
+    call.
 
     Raises:
         ValueError: names a file that cannot be used.

@@ -18,6 +18,7 @@ from ballpiston.parameter_lists import Numbers, Shapes, number_list, real_number
 from ballpiston.parameter_lists import truth_value, whole_number
 from ballpiston.plan import Plan
 from ballpiston.private_server import find_private_server
+from ballpiston.progress import progress_on_screen
 from ballpiston.result import Result
 from ballpiston.settings import address_and_security
 from ballpiston.server_status import ServerStatus, server_status_of
@@ -171,6 +172,7 @@ class Client:
         Raises:
             JobFailed, JobCancelled: the job did not succeed; `error.job` is the job.
         """
+        progress_on_screen(progress)  # a wrong value is an error before the job is submitted
         return self.submit(experiment, **question).watch(progress=progress)
 
     @takes_keywords_of(specification)
@@ -192,6 +194,8 @@ class Client:
         Raises:
             NotFound: there is no such job, or it belongs to another user.
         """
+        if not isinstance(name, str):
+            raise TypeError(f"name has to be a str, such as job.name, not {name!r}")
         full = name if name.startswith(_COLLECTION) else _COLLECTION + name
         request = ensemble_pb2.GetEnsembleJobRequest(name=full)
         return Job(self._connection, self._connection.call(request))
@@ -218,6 +222,8 @@ class Client:
             experiments=_numbers_of(spec_pb2.EnsembleSpec.Experiment, "experiment", experiment),
             labels=check_labels(labels),
         )
+        if limit is not None and (limit := whole_number("limit", limit)) < 0:
+            raise ValueError(f"limit is {limit}; permitted: 0 or more, or None for all jobs")
         jobs: list[Job] = []
         while limit is None or len(jobs) < limit:
             request.page_size = _PAGE if limit is None else min(_PAGE, limit - len(jobs))
@@ -365,7 +371,9 @@ def _orbit_request(
         seed=whole_number("seed", seed),
     )
     if cells is not None:
-        request.cells = ",".join(shape_list("cells", cells))  # the server permits one shape
+        if len(shapes := shape_list("cells", cells)) != 1:
+            raise ValueError(f"cells: a trace has one shape, not {len(shapes)}")
+        request.cells = shapes[0]
     if temperature is not None:
         request.temperature = real_number("temperature", temperature)
     return request

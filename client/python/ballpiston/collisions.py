@@ -51,7 +51,7 @@ class Collisions:
             ModuleNotFoundError: this needs pandas and pyarrow. No collision was read.
         """
         import pandas
-        import pyarrow as _  # pandas would miss it after the collisions were read
+        import pyarrow as _  # pandas looks for it only after the collisions were read
 
         with whole_file(Path(path)) as part:
             pandas.DataFrame(self.all()).to_parquet(part, index=False)

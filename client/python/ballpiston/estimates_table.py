@@ -32,6 +32,8 @@ def estimates_table(jobs: Iterable[Job]) -> Table:
     left_out: list[ResultsExpired | NotFound] = []
     count = 0
     for count, job in enumerate(jobs, 1):
+        if not hasattr(job, "result"):
+            raise TypeError(f"jobs has to be a list of jobs; one item is a {type(job).__name__}")
         try:
             rows += _rows(job)
         except (ResultsExpired, NotFound) as error:

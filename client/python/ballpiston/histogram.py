@@ -72,14 +72,16 @@ def choose_histogram(
     named = [h for h in histograms if h.name == name]
     if not named:
         raise KeyError(no_such("histogram", name, "this point", (h.name for h in histograms)))
-    found = [h for h in named if sigma in (None, h.sigma)]
+    is_timeless = time is not None and named[0].time is None
+    found = [h for h in named if sigma in (None, h.sigma) and not is_timeless]
     if time is not None and found:
         distances = [abs((h.time or 0.0) - time) for h in found]
         nearest = found[distances.index(min(distances))].time
         found = [h for h in found if h.time == nearest]
     if len(found) == 1:
         return found[0]
-    problem = "several" if found else f"none with sigma={sigma!r}"
+    wrong = f"time={time!r}" if is_timeless else f"sigma={sigma!r}"
+    problem = "several" if found else f"none with {wrong}"
     choices = " or ".join(dict.fromkeys(_choice(h) for h in found or named))
     raise KeyError(f"of the histogram {name!r} there are {problem}: choose {choices}")
 
@@ -88,7 +90,7 @@ def _choice(histogram: Histogram) -> str:
     """The arguments that choose it."""
     sigma = f"sigma={histogram.sigma:+d}" if histogram.sigma else ""
     time = "" if histogram.time is None else f"time={histogram.time:.6g}"
-    return ", ".join(filter(None, (sigma, time))) or "no sigma"
+    return ", ".join(filter(None, (sigma, time))) or "no sigma and no time"
 
 
 def _histogram(message: Any, total: float) -> Histogram:

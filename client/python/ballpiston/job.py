@@ -194,7 +194,12 @@ class Job:
         Example:
             >>> more = client.job(name).extend(samples=1e7)
             >>> more.continues, more.watch()
+
+        Raises:
+            TypeError: not exactly one of samples, collisions and tolerance is given.
         """
+        if samples is collisions is tolerance is None:
+            raise TypeError("extend needs a target: give samples, collisions or tolerance")
         spec = spec_pb2.EnsembleSpec()
         spec.CopyFrom(self.refresh().specification)
         estimate = spec.target.estimate

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 import numbers
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Union
 
 import numpy as np
@@ -92,7 +92,7 @@ def _items(name: str, value: object) -> list[object]:
         return [value]
     if isinstance(value, np.ndarray) and value.ndim != 1:
         raise ValueError(f"{name} has {value.ndim} dimensions; a list of parameters has one")
-    if isinstance(value, bytes) or not isinstance(value, Iterable):
+    if isinstance(value, (bytes, Mapping)) or not isinstance(value, Iterable):
         raise TypeError(f"{name} has to be a number or a list of numbers, not {value!r}")
     return list(value)
 

@@ -39,6 +39,9 @@ def add_points(points: Points, grid: Any) -> None:
 
 def _columns(points: Points) -> dict[str, list[Any]]:
     if isinstance(points, Mapping) or hasattr(points, "columns"):
+        for name in points:
+            if not isinstance(points[name], Iterable):
+                raise TypeError(f"points, column {name} has to be a list, not {points[name]!r}")
         return {name: list(points[name]) for name in points}
     rows = list(points) if isinstance(points, Iterable) else [points]
     if not all(isinstance(row, Mapping) for row in rows):

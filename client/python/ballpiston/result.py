@@ -75,6 +75,8 @@ class Result:
         """
         if isinstance(key, str):
             return self._column(key, "value")
+        if isinstance(key, slice):
+            raise TypeError(f"the key has to be the name of an estimate or a number, not {key!r}")
         return Point(self.messages[key])
 
     def __contains__(self, name: object) -> bool:

@@ -134,6 +134,8 @@ def test_a_dip_parts_two_maxima_if_it_is_deep_and_certain(
     points |= {"delta": np.geomspace(0.1, 0.3, 5), "excess": excess}
     points["standard_error"] = np.full(5, error)
     assert len(markov_test.maxima(points)["delta"]) == count
+    points["exponent"] = np.ones(5)  # the equilibrium law is left out, the columns stay
+    assert [len(column) for column in markov_test.maxima(points).values()] == [0] * 5
 
 
 # The random numbers differ from those of the script. A difference of two shares of 200 data sets

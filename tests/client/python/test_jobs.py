@@ -92,6 +92,15 @@ def test_a_deleted_job_is_not_found(client: ballpiston.Client) -> None:
     assert caught.value.reason == "JOB_NOT_FOUND"
 
 
+def test_a_job_is_found_by_a_text_and_a_list_has_a_limit(client: ballpiston.Client) -> None:
+    with pytest.raises(TypeError, match="name has to be a str, such as job.name, not 3"):
+        client.job(3)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="limit has to be a whole number, not 1.5"):
+        client.jobs(limit=1.5)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="limit is -1; permitted: 0 or more, or None"):
+        client.jobs(limit=-1)
+
+
 def test_a_notebook_shows_the_job_as_it_is_now(endless: ballpiston.Job) -> None:
     wait_until(lambda: "running" in endless._repr_html_())
     assert endless.name in repr(endless)

@@ -49,6 +49,7 @@ def test_a_table_may_be_a_frame_or_rows(client: ballpiston.Client) -> None:
         ({"rho": [0.53], "detla": [0.1]}, "'detla' is not a parameter; did you mean 'delta'?"),
         ([{"rho": 0.53}, {"delta": 0.1}], "row 1: has the keys delta; row 0 has rho"),
         ([{"rho": 0.53}, {"rho": "x"}], "points, column rho has to be a number, not 'x'"),
+        ({"rho": 0.53, "delta": [0.1]}, "points, column rho has to be a list, not 0.53"),
         ({"rho": [0.53], "epsilon": [0.1]}, "points has the column epsilon, and epsilon is given"),
         ([], "points has no row"),
         (7, "has to be a pandas.DataFrame"),
@@ -94,6 +95,8 @@ def test_an_extended_job_has_the_bytes_of_one_long_run(client: ballpiston.Client
     question: dict[str, Any] = dict(rho=0.53, delta=[0.1, 0.2], epsilon=0.125, exponent=1, seed=104)
     job = client.submit("first-hit", **question, samples=3_000)
     job.watch(progress=False)
+    with pytest.raises(TypeError, match="give samples, collisions or tolerance"):
+        job.extend()
     for samples in (20_000, 50_000):
         longer = job.extend(samples=samples)
         assert longer.continues == job.name
@@ -140,6 +143,11 @@ def test_an_export_without_a_job_or_without_results_fails(
     with pytest.raises(ballpiston.ResultsExpired):
         ballpiston.estimates_table([Expired()])
     assert "ensembleJobs/old is left out" in capsys.readouterr().err
+
+
+def test_a_table_of_estimates_needs_jobs(first_hits: ballpiston.Result) -> None:
+    with pytest.raises(TypeError, match="a list of jobs; one item is a Result"):
+        ballpiston.estimates_table([first_hits])  # type: ignore[list-item]
 
 
 def test_the_estimates_of_a_running_job_have_a_note(

@@ -52,6 +52,7 @@ def test_shapes_are_numbers_or_texts() -> None:
         (["0.1"], TypeError),
         ([True], TypeError),
         (object(), TypeError),
+        ({0.1: 1}, TypeError),
         (np.zeros((2, 2)), ValueError),
         ("0.1:0.2:1", ValueError),
     ],
@@ -110,6 +111,15 @@ def test_an_unknown_keyword_is_a_type_error_with_a_suggestion(client: ballpiston
     assert len(client.jobs(limit=None)) == before
 
 
+def test_a_wrong_progress_is_an_error_before_the_job_is_submitted(
+    client: ballpiston.Client,
+) -> None:
+    before = len(client.jobs(limit=None))
+    with pytest.raises(ValueError, match="progress is 'foo'; permitted: auto, bar, json, none"):
+        client.run("equilibrium", rho=0.53, delta=0.1, samples=31, progress="foo")
+    assert len(client.jobs(limit=None)) == before
+
+
 def test_a_whole_specification_stands_alone(client: ballpiston.Client) -> None:
     spec = ballpiston.specification("equilibrium", rho=0.53, delta=0.1)
     with pytest.raises(TypeError, match="give no seed"):
@@ -149,3 +159,9 @@ def test_a_single_violation_is_one_line(client: ballpiston.Client) -> None:
 def test_a_trace_reports_errors_of_the_server(client: ballpiston.Client) -> None:
     with pytest.raises(ballpiston.InvalidSpecification, match="events"):
         list(client.trace(rho=0.5296, delta=0.1, events=0))
+
+
+@pytest.mark.parametrize("cells", [[], [4, "4x3"]])
+def test_a_trace_has_one_shape_of_cells(client: ballpiston.Client, cells: Any) -> None:
+    with pytest.raises(ValueError, match=f"cells: a trace has one shape, not {len(cells)}"):
+        next(client.trace(rho=0.5296, delta=0.1, events=1, cells=cells))

@@ -120,6 +120,24 @@ def test_growth_without_an_error_is_left_out() -> None:
     assert np.isnan(found["met"][0])
 
 
+def test_a_single_rare_delta_has_two_orbits_and_one_place_in_the_picture(
+    client: ballpiston.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: dict[str, Any] = {}
+
+    def windows(program: str, command: str, **flags: Any) -> dict[str, Any]:
+        asked.update(flags)
+        values = [f"{kind}{part}" for kind in ("", "later_") for part in logarithm.PARTS]
+        names = (*values, *(f"{name}_error" for name in values), "limit_all", "limit_idle")
+        return {"window": 8 * 2.0 ** np.arange(5)} | {name: np.ones(5) for name in names}
+
+    monkeypatch.setattr(logarithm, "table_of", windows)
+    figure = logarithm.draw(logarithm.measure(client, rho=0.7, delta=0.004, samples=300))
+    assert asked["orbits"] == 2
+    bars = figure.axes[1].containers
+    assert len(bars) == 3 and len({bar.lines[0].get_xdata()[0] for bar in bars}) == 1
+
+
 # The second Lyapunov exponent
 
 RHO = 0.53
@@ -195,3 +213,14 @@ def test_fits_without_enough_points_are_left_out() -> None:
         "constant",
         "computed",
     ]
+
+
+@pytest.mark.parametrize(("rho", "delta"), [(0.56, 0.1), (0.7, 0.004), (0.707, 1e-4)])
+def test_the_computed_curve_ends_at_the_largest_delta(
+    client: ballpiston.Client, rho: float, delta: float
+) -> None:
+    tables = lyapunov.measure(client, rho=rho, delta=delta, collisions=6400, samples=64)
+    deltas = tables["lyapunov-curve"]["delta"]
+    assert deltas[-1] == pytest.approx((1 - np.sqrt(4 * rho**2 - 1)) / 2, rel=1e-12)
+    assert (np.diff(deltas) > 0).all()
+    lyapunov.draw(tables)

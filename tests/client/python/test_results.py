@@ -70,11 +70,18 @@ def test_the_density_of_both_signs_of_an_angle_integrates_to_one(
         np.testing.assert_allclose(h.expected_density * np.diff(h.edges), h.expected)
 
 
+def test_a_slice_is_not_a_key(first_hits: ballpiston.Result) -> None:
+    with pytest.raises(TypeError, match=r"the name of an estimate or a number, not slice\(0, 2"):
+        first_hits[0:2]  # type: ignore[call-overload]
+
+
 def test_a_histogram_without_a_choice_lists_the_choices(first_hits: ballpiston.Result) -> None:
     with pytest.raises(KeyError, match="there are several: choose sigma=-1 or sigma=.1"):
         first_hits.histogram("alpha")
     with pytest.raises(KeyError, match="none with sigma=3: choose sigma=-1 or sigma=.1"):
         first_hits.histogram("alpha", sigma=3)
+    with pytest.raises(KeyError, match="none with time=3: choose sigma=-1 or sigma=.1"):
+        first_hits.histogram("alpha", sigma=1, time=3)
     with pytest.raises(KeyError, match="this point has alpha"):
         first_hits.histogram("beta")
 

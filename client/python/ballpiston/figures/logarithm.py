@@ -52,14 +52,15 @@ def measure(
     samples: float = 16_384,
     seed: int = 0,
 ) -> Tables:
-    """The parts of the integral at each delta by window, from `samples` orbits of 256 mean free times, and
-    the fits. At delta below 0.05 there are orbits (delta/0.05)^2."""
+    """The parts of the integral at each delta by window, from `samples` orbits of 256 mean free
+    times, and the fits. Below delta = 0.05 the number of orbits is smaller by the factor
+    (delta/0.05)^2, but at least 2."""
     forms = client.analytic(rho, delta)
     found = []
     for d, width, tau in zip(
         number_list("delta", delta), forms["lambda"].tolist(), forms["tau_ball_piston"].tolist()
     ):
-        count = int(samples * min(1.0, (d / _FEWER_BELOW) ** 2))
+        count = max(2, int(samples * min(1.0, (d / _FEWER_BELOW) ** 2)))
         pair = {"rho": rho, "delta": d, "seed": seed}
         windows = table_of("slow_pistons", "windows", **pair, orbits=count)
         facts = {"delta": d, "x": (width + 2 * d) / tau}
@@ -140,7 +141,8 @@ def draw(tables: Tables) -> Figure:
         fit = rows(tables["logarithm-delta"], part=part)
         line = np.linspace(logarithm.min(), logarithm.max(), 2)
         right.plot(line, fit["a"] + fit["b"] * line, color=style.colour(k))
-        shown = logarithm + _ASIDE * (k - 1), value / first["x"], error / first["x"]
+        aside = _ASIDE * (k - 1) if len(logarithm) > 1 else 0
+        shown = logarithm + aside, value / first["x"], error / first["x"]
         style.error_points(right, *shown, style.colour(k), part)
     style.level(right, 0)
     right.set(xlabel="log(1/x)", ylim=_SHOWN)

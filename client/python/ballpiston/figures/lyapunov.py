@@ -12,6 +12,7 @@ Time on one core: quick 10 s, default 1 min, full 8 min.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -33,7 +34,8 @@ _FEWER_BELOW = 0.02  # collisions cost 1/delta^2; below this delta there are few
 _FEWEST = 6400  # for which the server states errors
 _RARE = 0.03  # fits are to this delta and below
 _LIMIT = 1e-7  # a delta that stands for the limit
-_CURVE = "0.0000001,0.000001,0.00001:0.001:9:log,0.0014:0.3:30:log"
+_CURVE = "0.0000001,0.000001,0.00001:0.001:9:log,0.0014:{end!r}:30:log"
+_CURVE_END = 0.3
 
 
 def measure(
@@ -75,10 +77,13 @@ def _exponents(
 
 
 def _curve(client: Client, rho: float, samples: int, seed: int) -> Table:
-    """With the same random numbers at every delta, so that the curve is smooth; the limit, at the
-    first delta, with more of them."""
+    """Up to delta = 0.3, or to the largest permitted one if that is smaller. With the same random
+    numbers at every delta, so that the curve is smooth; the limit, at the first delta, with more of
+    them."""
+    end = min(_CURVE_END, (1 - math.sqrt(4 * rho**2 - 1)) / 2)
+    deltas = [d for d in number_list("delta", _CURVE.format(end=end)) if d <= end]
     found = []
-    for delta, tau in mean_free_times(client, rho, _CURVE).items():
+    for delta, tau in mean_free_times(client, rho, deltas).items():
         count = samples if delta == _LIMIT else samples // 8
         growth = second_exponent(rho, delta, tau, count, seed)
         found.append({"delta": delta, "tau": tau} | growth._asdict())

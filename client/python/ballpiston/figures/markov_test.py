@@ -105,11 +105,10 @@ def maxima(points: Table) -> Table:
     equilibrium law, n = 1, is left out."""
     found: list[dict[str, Any]] = []
     for (epsilon, exponent), series in oscillation.series_of(points):
-        if exponent == 1:
-            continue
         falling = pick(series, np.argsort(-series["delta"], kind="stable"))
         x, y = np.log(falling["delta"]), falling["excess"]
-        tops = np.array([_top(x, y, i) for i in _highest_points(y, falling["standard_error"])])
+        highest = () if exponent == 1 else _highest_points(y, falling["standard_error"])
+        tops = np.array([_top(x, y, i) for i in highest])
         part = {"epsilon": epsilon, "exponent": exponent, "delta": np.exp(tops)}
         part["spacing_of_log_delta"] = -np.diff(tops, prepend=np.nan)
         part["spacing_of_inverse_delta"] = np.diff(np.exp(-tops), prepend=np.nan)

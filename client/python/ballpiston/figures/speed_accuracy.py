@@ -98,7 +98,7 @@ class Curve:
 
     @property
     def colour(self) -> Any:
-        """Of fixed steps it is the lighter the larger they are."""
+        """Larger fixed steps have a lighter colour."""
         if self.time_step > 0:
             return _STEPS(0.25 - 0.18 * np.log10(self.time_step))
         return _METHODS[self.method][1]
