@@ -99,7 +99,7 @@ double ExpectedLimitError(const PointParameters& point) {
 }
 
 double ExpectedLimitErrorInAGas(const PointParameters& point) {
-  constexpr double kOfMorePistons = 1.5;
+  constexpr double kOfMorePistons = 1.7;
   return kOfMorePistons * ExpectedLimitError(point);
 }
 
