@@ -76,7 +76,7 @@ class BallpistonServer {
   // Sets health to NOT_SERVING, rejects new jobs, ends watches with UNAVAILABLE, drops blocks that
   // are not merged, gives calls in progress the time `drain` to end, and flushes the store.
   void Shutdown(std::chrono::milliseconds drain);
-  // For a process that ends without the destructor, also while Shutdown runs.
+  // For a process that ends without the destructor. May be called while Shutdown runs.
   void LeaveDataFolder() const { directory_.Leave(); }
 
  private:

@@ -60,7 +60,7 @@ end
 complete -c ballpiston -f -a '(__ballpiston_offers)'
 )fish";
 
-// The argument after so many others; null if the verb has no further argument.
+// The verb's argument after `others` earlier ones; null if the verb has no further argument.
 const Argument* ArgumentAfter(size_t others, const Verb& verb) {
   if (others < verb.arguments.size()) return &verb.arguments[others];
   const bool is_open = !verb.arguments.empty() && verb.arguments.back().IsMany();

@@ -37,7 +37,8 @@ absl::StatusOr<std::vector<std::string>> PointsOf(const Connection& connection,
   return points;
 }
 
-// The page computes how many points are left out: the job, fetched later, counts all of them.
+// The job is fetched after the points and counts all of them, so the page can compute how many are
+// left out.
 absl::StatusOr<std::string> JobJson(const Connection& connection, const std::string& name) {
   const auto points = PointsOf(connection, name);
   if (!points.ok()) return points.status();

@@ -157,8 +157,8 @@ absl::StatusOr<std::string> StartServer(const ServerProgram& program, absl::Dura
   Await(timeout, [&] {
     const auto server = FindServer(program.folder);
     if (!exit_status) exit_status = ExitStatus(*pid);
-    // Perhaps of another server, started at the same time. Until the new server's id is known, the
-    // address may be that of an earlier server.
+    // The address may be that of another server, started at the same time. Until the new server's
+    // id is known, it may also be that of an earlier server.
     if (server && (server->pid != 0 || exit_status)) address = server->address;
     return !address.empty() || (exit_status && !server);
   });

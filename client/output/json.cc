@@ -23,7 +23,8 @@ absl::Status ReadJson(const std::string& json, google::protobuf::Message& messag
   if (!absl::StartsWith(absl::StripLeadingAsciiWhitespace(json), "{")) {
     return absl::InvalidArgumentError("not a JSON object");
   }
-  // The parser takes the last value of a repeated key. It is strict only with the keys of a map.
+  // The parser takes the last value of a repeated field. It rejects only repeated keys of a map, so
+  // the text is also parsed as a map.
   google::protobuf::Struct keys;
   const auto read = google::protobuf::util::JsonStringToMessage(json, &keys);
   const size_t repeated = read.message().find("Repeated map key: ");

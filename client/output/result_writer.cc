@@ -18,7 +18,7 @@
 namespace ballpiston::client {
 namespace {
 
-// One document, or only its points with a line each.
+// Writes one JSON document, or only its points, one on each line.
 class JsonWriter : public ResultWriter {
  public:
   JsonWriter(std::ostream& out, bool is_document) : out_(out), is_document_(is_document) {}

@@ -19,7 +19,7 @@ namespace ballpiston::client {
 inline constexpr char kUnaryType[] = "application/json";
 inline constexpr char kStreamType[] = "application/connect+json";
 
-// From the protocol's table of codes.
+// The HTTP status for a code, from the table of the Connect protocol.
 int HttpStatus(absl::StatusCode code);
 
 // {"code", "message", "details"}: the details that the server attached, in base64 and as JSON.

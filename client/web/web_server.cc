@@ -26,7 +26,8 @@ constexpr char kLoopback[] = "127.0.0.1";
 constexpr size_t kMostCallsPerConnection = 1000;
 // The longest time that a reader of a stream may pause.
 constexpr std::chrono::hours kPatience{1};
-// The longest pause within a request, and before one. Until then a connection keeps its thread.
+// The longest pause within a request and before one. During the pause the connection keeps its
+// thread.
 constexpr int kPauseSeconds = 1;
 
 using httplib::Request;
@@ -65,9 +66,9 @@ void RespondError(const absl::Status& status, Response& response) {
 }
 
 // The library refuses a request that is too long, is not HTTP, or has a path or method without
-// handler.
+// a handler.
 void ExplainRefusal(const Request&, Response& response) {
-  if (response.has_header("Content-Type")) return;  // it has a body
+  if (response.has_header("Content-Type")) return;  // the response has a body
   absl::Status status = absl::InvalidArgumentError("this is not a request of the gateway");
   if (response.status == 413) {
     status = absl::ResourceExhaustedError(

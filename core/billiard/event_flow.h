@@ -14,8 +14,9 @@
 //     energy. So the energy stays 1/2 to an ulp for ever, and a slow ball keeps all its digits.
 // Properties, each with a test of its name:
 //   1. OrbitsKeepTheirEnergyAndStayBetweenWallsAndPiston.
-//   2. LanesMeetThePistonWhereTheReferenceDoes.  3. HorizonGrowsWithTheLogarithmOfThePrecision:
-//      in double an orbit is right for about 30 wall hits.
+//   2. LanesMeetThePistonWhereTheReferenceDoes.
+//   3. HorizonGrowsWithTheLogarithmOfThePrecision: in double an orbit is right for about 30 wall
+//      hits.
 //
 // Real is a floating-point type with numeric_limits, sqrt, fabs and copysign (found in std or
 // beside the type). The geometry's rho and the piston's walls are the same doubles in every

@@ -17,7 +17,8 @@
 
 namespace ballpiston {
 
-// One value alone is permitted from `lower` to `upper`, or by a function.
+// A single value is permitted from `lower` to `upper`. If there is a function `validate`, it
+// decides instead.
 struct Parameter {
   absl::string_view name;  // of the grid's list
   size_t index;            // in kParameters; determines random streams

@@ -130,7 +130,7 @@ class PointExperiment {
   std::vector<Measurement> table_;
 };
 
-// Makes an experiment; for its row.
+// Creates an experiment. Rows of experiments refer to this function.
 template <typename Experiment>
 std::unique_ptr<PointExperiment> CreateAs(const EnsembleSpec& spec, const PointParameters& point) {
   return std::make_unique<Experiment>(spec, point);

@@ -40,8 +40,8 @@ struct Expected {
   Scatter scatter = {};  // if the spec has a tolerance
 };
 
-// A model is chosen only if it decides whether the point is refused: without a tolerance AUTO
-// answers by the billiard, or without samples.
+// A model is chosen only if the choice decides whether the point is refused. Without a tolerance
+// AUTO answers by the billiard or without samples.
 Expected ExpectedAt(const EnsembleSpec& spec, const PointParameters& point) {
   Expected expected = {point, Sampled(spec.model)};
   if (spec.model == Model::kAuto && (spec.target.tolerance || !IsSoundForBilliard(spec, point))) {
@@ -61,8 +61,8 @@ std::vector<FieldViolation> BeyondTheDomain(const EnsembleSpec& spec) {
   return found;
 }
 
-// If a relative error is out of reach: of an estimate that has none, or because the largest
-// permitted number of samples has no error.
+// A violation if the estimate has no relative error, or if even the largest permitted number of
+// samples is too small for an error.
 std::optional<FieldViolation> WithoutAnError(const EnsembleSpec& spec, const Expected& expected) {
   const auto& [point, model, scatter] = expected;
   const double needed = TakesSamples(model) ? scatter.SamplesForAnError() : 0;
@@ -80,8 +80,9 @@ std::optional<FieldViolation> WithoutAnError(const EnsembleSpec& spec, const Exp
                                         ParametersText(point), reason)};
 }
 
-// The model's error, if a pilot can check it. For a model that samples, at least the statistical
-// error of the largest permitted number of samples.
+// The least tolerance that can be reached: the model's error, which counts for `markov` only where
+// pilots can check it. For a model that samples, at least the statistical error of the largest
+// permitted number of samples.
 double LeastTolerance(const EnsembleSpec& spec, const Expected& expected) {
   const auto& [point, model, scatter] = expected;
   const Question question(spec, point, Machine());
@@ -103,9 +104,9 @@ FieldViolation BelowReach(const EnsembleSpec& spec, double least) {
                        Name(spec.model), " can reach; permitted: ", permitted, other)};
 }
 
-// A number of samples or collisions with one digit that takes at most kMostSeconds; 0 if there is
-// none. The time has parts that do not grow with the number; therefore the first guess may be too
-// large.
+// A number of samples or collisions with one significant digit that takes at most kMostSeconds; 0
+// if there is none. The time has parts that do not grow with the number; therefore the first guess
+// may be too large.
 int64_t PermittedCount(EnsembleSpec spec, const PointParameters& point,
                        std::optional<int64_t> Target::*kind, double guess) {
   for (; guess >= 1; guess /= 2) {

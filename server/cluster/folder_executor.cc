@@ -274,7 +274,7 @@ void FolderExecutor::LookAtTaken(Leases::iterator laid) {
     return;
   }
   if (!is_late) return;
-  // Its chunks are read from done/ in the next look. Its file may be gone.
+  // The lease's chunks are read from done/ at the next look. Its file may be gone.
   if (files_->Move(file.Taken(), file.Done(Outcome::kLost)).ok()) return;
   {
     MutexLock lock(mutex_);

@@ -3,15 +3,14 @@
 //
 // The folder is a means of transport and no store: it may be emptied at any time. The file of a
 // lease proves the chunks in it (worker/lease_file.h). So a later process of the
-// server reads what the workers of an earlier one left. The server looks every second:
+// server reads the chunks that the workers of an earlier one left. The server looks every second:
 //   - A lease in done/ ends. Its chunks are reported and on disk before its file is removed.
 //   - A lease in taken/ of which the server knows nothing is moved to done/, so its worker stops.
 //   - A lease that nobody takes goes back to the scheduler after the time-out, so this server's
 //     threads can compute it. If they have other work, the lease is laid again.
 //   - A lease is lost if its file does not change, or is not there, for the time-out. The server
-//   compares times of
-//     the folder with each other only, and measures the time-out with its own steady clock. So a
-//     clock that jumps loses no lease.
+//     compares times of the folder only with each other, and measures the time-out with its own
+//     steady clock. So a clock that jumps loses no lease.
 // A late worker changes nothing, and a folder that is emptied loses no work (checked in
 // tests/simulation).
 // Thread-safe. One thread.

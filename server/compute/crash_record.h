@@ -48,11 +48,11 @@ class CrashRecord {
   struct Slot;
 
  public:
-  // While it lives, its thread computes the point, and can note its death, even if its stack is
-  // full. Without a point the thread examines what is known of the run, which may be paused: a
-  // death in this thread counts for this run alone, and a death in another thread does not count
-  // for it. If one thread has several entries, the newest counts. If the record has no free place,
-  // the constructor waits until another one ends.
+  // While an entry lives, its thread computes the point, and can note its own death, even if its
+  // stack is full. Without a point the thread examines what is known of the run, which may be
+  // paused: a death in this thread counts for this run alone, and a death in another thread does
+  // not count for it. If one thread has several entries, the newest counts. If the record has no
+  // free place, the constructor waits until another one ends.
   class Entry {
    public:
     Entry(CrashRecord& record, const RunName& run, std::optional<size_t> point = {});

@@ -51,7 +51,7 @@ class FairShare {
 
   // A task of the run that First returned begins, so the runs before it had no task.
   void TurnBegins(int64_t run);
-  // A task ends. This and the next are ignored if the run is not present.
+  // A task ends. TurnEnds and Used are ignored if the run is not present.
   void TurnEnds(int64_t run, double seconds);
   // A run has used more time in a turn that goes on.
   void Used(int64_t run, double seconds);
@@ -94,8 +94,8 @@ class FairShare {
       Insert(key, share);
     }
 
-    // Raises the entries before this one to its charge. First finds all, then raises one after the
-    // other, because rounding may leave a raised charge just below the mark.
+    // Raises the entries before this one to its charge. All of them are found before one is
+    // raised, because rounding may leave a raised charge just below the mark.
     void RaiseThoseBefore(const Key& key) {
       const double charge = shares_.at(key).Charge();
       std::vector<Key> passed;
@@ -125,7 +125,7 @@ class FairShare {
   template <typename Change>
   void Update(int64_t run, Change change);
 
-  std::unordered_map<int64_t, Place> places_;  // of runs
+  std::unordered_map<int64_t, Place> places_;  // by run
   std::map<std::string, RunsByRank> runs_;     // by principal, which has runs
   Turns<std::string> principals_;
   std::map<std::string, double> ahead_;  // charges of principals that left with more than others

@@ -39,7 +39,7 @@ class HeldLeases {
 
   // A turn at the lease begins. Returns the lease.
   const Lease& BeginTurn(Held& held);
-  // A turn ends. The lease stays while it has a turn, in progress or to be taken.
+  // A turn ends. The lease stays while it has a turn in progress, or one that can begin.
   void EndTurn(const Lease& lease);
 
   bool Has(const Lease& lease) const { return held_.contains(KeyOf(lease)); }

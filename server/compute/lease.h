@@ -9,7 +9,7 @@
 //
 // A local executor, the threads of this server, opens points, takes every lease, and shares a lease
 // between turns. The scheduler waits for its turns to end before a run ends. An executor elsewhere
-// gets leases of chunks alone, and only of runs that are worth it. It reports all chunks, or
+// gets only leases of chunks, and only of large runs (Run::IsLarge). It reports all chunks, or
 // returns the lease, or keeps it until the lease's stop is requested. It may report chunks late,
 // twice and in any order.
 #pragma once
@@ -37,7 +37,7 @@ struct LeaseMemory {
   double of_a_further_turn = 0;
 };
 
-// What turns at a lease of a local executor have in common.
+// The work that the turns at one lease of a local executor share.
 class SharedWork {
  public:
   virtual ~SharedWork() = default;
@@ -66,8 +66,8 @@ struct Lease {
   // If samples continue each other: the states from which chunks start, by group.
   std::vector<GroupState> groups = {};
   double seconds = 0;       // predicted, of one core at nominal speed; 0 if all the rest is leased
-  LeaseMemory memory = {};  // if it is local
-  std::shared_ptr<SharedWork> work = {};  // likewise, if it has chunks
+  LeaseMemory memory = {};  // if the lease is local
+  std::shared_ptr<SharedWork> work = {};  // if the lease is local and has chunks
 
   // Stop is requested when the chunks are no longer needed.
   std::stop_token stop = {};
@@ -96,9 +96,9 @@ struct LeaseReport {
 // The work that an executor can take now, in seconds of one core at nominal speed.
 struct Capacity {
   bool local = true;  // the threads are this process's
-  // Of a local executor: the work of a new lease, which is shared from now on.
+  // Of a local executor: makes the work of a new lease, which its turns share from now on.
   std::function<std::shared_ptr<SharedWork>(const Lease&)> share = {};
-  bool waits = false;  // until there is a lease
+  bool waits = false;  // Scheduler::Next waits until there is a lease
   // A lease has the fewest chunks that take as long as this.
   double seconds = std::numeric_limits<double>::infinity();
   // Bytes. A lease takes no more with one turn at a time.

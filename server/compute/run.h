@@ -162,12 +162,12 @@ class Run {
   // Whether only some points are computed now, and not this one.
   bool IsHeldBack(size_t point) const;
   bool HasPointsToOpen() const { return !reopen_.empty() || next_point_ < taken_.size(); }
-  // What is left takes long enough for executors that are not local.
+  // The rest of the run takes long enough for executors that are not local.
   bool IsLarge() const;
   void SkipTakenPoints();
   Lease Completed(Lease lease) const;
 
-  // Its shortfall is that of the first point. Its suspicion has the points that are left.
+  // `shortfall` is that of the first point that has one. `suspicion` has the points that are left.
   RunRequest request_;
   const std::shared_ptr<const EnsembleSpec> spec_;
   const SchedulerOptions options_;

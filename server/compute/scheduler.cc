@@ -57,7 +57,8 @@ void Scheduler::Shutdown() {
   Wake();
   while (HasTurns()) woken_.Wait(mutex_);
   for (const auto& [key, run] : runs_) {
-    DropStoppedLeases(*run);  // their work may refer to what ends before this
+    // The work of the leases may refer to objects that are destroyed before the scheduler.
+    DropStoppedLeases(*run);
     run->WriteCheckpoints();
   }
 }

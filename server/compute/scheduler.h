@@ -1,9 +1,10 @@
 // Decides which lease an executor gets next, and merges what executors report.
 //
 // The scheduler is passive: it has no threads and no clock. Executors (lease.h) call it. A lease
-// goes to the run whose turn it is (fair_share.h; here and elsewhere a run has its own shares), or
-// to the next run if that run has no lease for this executor now. The scheduler merges chunks in
-// order under its lock, so results depend neither on executors nor on the order of reports.
+// goes to the run whose turn it is (fair_share.h; the shares of this server's threads and those of
+// executors elsewhere are separate), or to the next run if that run has no lease for this executor
+// now. The scheduler merges chunks in order under its lock, so results depend neither on executors
+// nor on the order of reports.
 // Properties, each with a test of its name:
 //   1. APilotIsComputedOnceForAllRuns.
 //   2. AStoppedRunEndsWhenItsTurnsHaveEnded.
@@ -58,8 +59,8 @@ class Scheduler {
   // ---- for executors ----
 
   // The lease to work on now; empty if there is none, or after Shutdown. For a local executor it
-  // may be a lease that it has already (SharedWork::HasTurn). A turn at the lease begins. May wait
-  // for the disk.
+  // may be a lease that the executor already has (SharedWork::HasTurn). A turn at the lease begins.
+  // May wait for the disk.
   std::optional<Lease> Next(const Capacity& capacity);
 
   // There may be a new lease, or a turn at one. Call it after a report.
@@ -116,11 +117,11 @@ class Scheduler {
   std::optional<Lease> Choose(const Capacity& capacity) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> NextOf(Run& run, const Capacity& capacity)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // The second stops the run, too. Both return leases whose work is to be destroyed without the
+  // StopRun also stops the run. Both return leases whose work is to be destroyed without the
   // lock: their stop was requested, and no local turn at them is in progress.
   std::vector<Lease> DropStoppedLeases(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::vector<Lease> StopRun(Run& run, absl::Status why) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // Those that the run owns, or this one if it does.
+  // Ends the pilots that the run owns; with `only`, just that one, if the run owns it.
   void EndPilots(const Run& owner, std::optional<PilotPlace> only = {})
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Charge(Run& run, const Lease& lease, double seconds) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);

@@ -68,8 +68,8 @@ inline constexpr FixedError CredentialsInvalid = {absl::StatusCode::kUnauthentic
 inline constexpr FixedError CredentialsExpired = {
     absl::StatusCode::kUnauthenticated, "CREDENTIALS_EXPIRED", "",
     "these credentials have expired; ask for new ones"};
-// The engine killed the process, or a worker elsewhere, while it computed this part of a job, so
-// many times.
+// $0 is the part of a job. $1 is how often the engine killed the process, or a worker elsewhere,
+// while it computed this part.
 inline constexpr FixedError EngineCrashed = {
     absl::StatusCode::kInternal, "ENGINE_CRASHED", "",
     "the engine crashed $1 times while it computed $0: this is a fault of the program, not of the "

@@ -39,7 +39,8 @@ class ServerTls {
   // This object must outlive the server that uses the credentials.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
 
-  // Reads the files again. On any error, and instead of an expired pair, a valid pair stays in use.
+  // Reads the files again. On any error the old pair stays in use. An expired pair does not
+  // replace a valid one.
   // New connections use the new pair a second later. One thread at a time.
   absl::Status Reload();
 

@@ -171,7 +171,7 @@ class Watch {
   }
 
   // Adds the next finished points to the message: those of `active`, or those of the store if
-  // `active` is null. Sends it if it has a point, or new progress of an active job.
+  // `active` is null. Sends the message if it has a point, or new progress of an active job.
   absl::StatusOr<bool> TellPoints(const JobRecord& record, const Job* active) {
     v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
     *snapshot.mutable_progress() =

@@ -146,7 +146,8 @@ absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
   if (lock < 0) return NotWritable(path, errno);
   const int error = Lock(lock);
   if (error == 0) {
-    unlink(AddressFile(path).c_str());  // left by a killed server; before a client knows this one
+    // A killed server left its address. It is removed before clients can read this server's id.
+    unlink(AddressFile(path).c_str());
     WriteProcessId(lock);
     return DataDirectory(path, lock);
   }

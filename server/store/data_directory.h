@@ -7,9 +7,8 @@
 //   lock            The server holds an exclusive lock (flock) on it as long as this object lives.
 //                   The kernel releases the lock when the process ends, however it ends. The file
 //                   contains the server's process id: one line of decimal digits.
-//   server.address  One line: where the server listens. Written when it listens. If the lock has
-//   the
-//                   id of its holder, the address is of that server too.
+//   server.address  One line: where the server listens. Written when it listens. If the
+//                   lock contains the id of its holder, the address is of that server too.
 //
 // A client that wants to stop the server tests the lock, then reads the id, then sends SIGTERM:
 //   - The file is not locked: no server is here. The file's content means nothing.
@@ -17,8 +16,8 @@
 //     that was killed leaves its id, and the next server replaces it only some microseconds after
 //     it has taken the lock. The old id is that of a dead process: if there is no such process, or
 //     it is not a ballpistond, read the file again.
-//   - It is locked and empty: the server is about to write its id, retry; or it is ending; or the
-//     disk is full.
+//   - It is locked and empty: the server is about to write its id, or is ending, or the disk is
+//     full. Retry.
 // The server empties the file before it releases the lock. It never changes a file `lock` that
 // contains something else, which another program must have written.
 #pragma once

@@ -12,7 +12,7 @@ constexpr char kActiveStates[] = "1, 2, 3";
 static_assert(v1::EnsembleJob::QUEUED == 1 && v1::EnsembleJob::RUNNING == 2 &&
               v1::EnsembleJob::CANCELLING == 3);
 
-// Each has an index.
+// The schema has an index for each condition.
 const char* ConditionOf(Removable what) {
   return what == Removable::kResults ? "end_time IS NOT NULL AND expired = 0 AND pinned = 0"
                                      : "expired = 1";

@@ -103,8 +103,8 @@ struct JobSize {
   int64_t bytes = 0;  // of the specification and the results
 };
 
-// What retention (book/retention.cc) may remove: the results of jobs that have ended and are not
-// pinned; jobs whose results have expired.
+// Retention (book/retention.cc) may remove the results of jobs that have ended and are not pinned,
+// and jobs whose results have expired.
 enum class Removable { kResults, kJobs };
 
 // At most `most` such jobs that ended before `ended_before`. Those that ended first come first.

@@ -139,7 +139,7 @@ absl::Status CheckKind(const std::string& path, Database& database, bool& unfini
                          " than this program's version ", kSchemaVersion));
 }
 
-// Through a connection that cannot write. Sets `unfinished` as CheckKind.
+// Through a connection that cannot write. Sets `unfinished` as CheckKind does.
 absl::StatusOr<std::unique_ptr<Database>> OpenChecked(const std::string& path, bool& unfinished) {
   struct stat found {};
   const bool is_folder = stat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode);

@@ -153,9 +153,9 @@ class Store {
     Kind kind = Kind::kRecord;
     Change change = {};
     Done done = {};
-    size_t bytes = 0;            // of memory, about
+    size_t bytes = 0;            // of memory, approximately
     int64_t job = 0, point = 0;  // of a checkpoint or a result
-    bool has_waited = false;     // for a disk that failed
+    bool has_waited = false;     // because the disk failed
     // Set when the write is refused, or when a request has failed.
     std::optional<absl::Status> outcome = {};
 
@@ -189,7 +189,7 @@ class Store {
 
   void Post(Write write, bool soon = false) ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status CommitRequest(Kind kind, Change change);
-  // How long this write, and with it all that wait, may wait for others.
+  // How long this write may wait for others. All writes that wait are committed together with it.
   Clock::duration DelayOf(const Write& write) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Whether more than one `part`-th of the room of AwaitRoom is taken.
   bool IsFull(size_t part = 1) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -241,10 +241,11 @@ class Store {
   Condition posted_;
   Condition written_;
   Writes waiting_ ABSL_GUARDED_BY(mutex_);       // in the order of posting
-  size_t requests_ ABSL_GUARDED_BY(mutex_) = 0;  // of them
+  size_t requests_ ABSL_GUARDED_BY(mutex_) = 0;  // those in waiting_
   size_t in_group_ ABSL_GUARDED_BY(mutex_) = 0;  // writes that are being committed
-  size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;     // of both
-  // When all that wait are to be written; while the disk fails, the time of the next attempt.
+  size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;     // of waiting_ and the group
+  // When all waiting writes are to be committed; while the disk fails, the time of the next
+  // attempt.
   Clock::time_point due_ ABSL_GUARDED_BY(mutex_) = kNever;
   bool failing_ ABSL_GUARDED_BY(mutex_) = false;
   std::string failure_ ABSL_GUARDED_BY(mutex_);  // the last failure that was logged

@@ -39,7 +39,7 @@ bool HasAvx3() {
          CPU_FEATURE_ACTIVE(AVX512BW);
 }
 
-// Highway does not compile for its next target, HWY_AVX3_DL, unless it is told to.
+// By default Highway is not compiled for its next target, HWY_AVX3_DL.
 int64_t Detected() {
   return (HasSsse3() ? HWY_SSSE3 : 0) | (HasSse4() ? HWY_SSE4 : 0) | (HasAvx2() ? HWY_AVX2 : 0) |
          (HasAvx3() ? HWY_AVX3 : 0);

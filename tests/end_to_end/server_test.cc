@@ -129,7 +129,7 @@ TEST_F(ServerTest, AServerInAFolderIsStartedCheckedCopiedAndStopped) {
   EXPECT_THAT(Server("stop", named_), ExitsWith(0));
 }
 
-// A server that stops, and one that is killed, are followed by one at another address.
+// After a server has stopped or was killed, a new server starts at another address.
 TEST_F(ServerTest, StartPrintsTheAddressOfTheServerThatItStarted) {
   for (int i = 0; i < 6; ++i) {
     const std::string address = absl::StrCat("unix:", home_.File("socket"), i);

@@ -1,6 +1,5 @@
 // Gauss-Legendre quadrature with 30 nodes in quadruple precision (Boost's): exact to rounding for
-// integrands that are analytic well beyond the interval. Integrands with a kink are to be cut
-// there.
+// integrands that are analytic well beyond the interval. Cut an integrand with a kink at the kink.
 #pragma once
 
 #include <boost/math/quadrature/gauss.hpp>

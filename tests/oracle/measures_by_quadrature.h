@@ -3,7 +3,7 @@
 //
 // The upper right disc's arc is (x, y) = (1/2 - rho sin t, 1/2 - rho cos t), t the angle at its
 // centre, from the cell's tip (y = 0) leftwards. All integrands are polynomials of sines of t, so
-// 30 Gauss nodes are exact to rounding, cusp (rho -> 1/2) included. The plain differences cost
+// 30 Gauss nodes are exact to rounding, also at the cusp (rho -> 1/2). The plain differences cost
 // digits in proportion to 1/delta: about twenty of the 34 remain at delta = 1e-13, fifteen at
 // 1e-19.
 #pragma once

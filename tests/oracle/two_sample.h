@@ -21,7 +21,7 @@ inline double NormalScoreOfChiSquare(double square, double degrees) {
 // Compares two histograms over the same cells. The sum over cells of
 // (sqrt(M/N) n - sqrt(N/M) m)^2/(n + m), with totals N and M, is distributed as chi^2 with one
 // degree of freedom less than cells. The result is its normal score. Neighbouring cells are joined
-// until they hold kFewest. 0 if all are joined into one.
+// until they hold kFewest. The score is 0 if all are joined into one.
 inline double ChiSquareScore(std::span<const uint64_t> first, std::span<const uint64_t> second) {
   constexpr double kFewest = 20;
   double totals[2] = {0, 0};

@@ -57,7 +57,7 @@ TEST(Simulation, OneSeedIsOneWorld) {
   EXPECT_EQ(once.last_bits, again.last_bits);
 }
 
-// The server does not start on such a disk, or acknowledged jobs are lost: in 15 of 16 worlds.
+// In 15 of 16 worlds the server does not start on such a disk, or acknowledged jobs are lost.
 TEST(Simulation, ADiskThatReportsFalseFlushesIsDetected) {
   int detected = 0;
   for (uint64_t seed = 1; seed <= 4; ++seed) {

@@ -1,5 +1,5 @@
-// gas-conduction by the jump process beside a plain program, which shares no physics with core/
-// (tests/oracle/plain_jump_chain.h): the current, its cumulants, the exchange rate and the
+// Compares gas-conduction by the jump process with a plain program that shares no physics with
+// core/ (tests/oracle/plain_jump_chain.h): the current, its cumulants, the exchange rate and the
 // temperatures.
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
@@ -136,10 +136,11 @@ class PlainChains : public testing::TestWithParam<int64_t> {};
 INSTANTIATE_TEST_SUITE_P(Cells, PlainChains, testing::Values(1, 2, 4, 8, 16),
                          testing::PrintToStringParamName());
 
-// 2 + 2 N to 4 + 2 N comparisons of errors from 64 runs and 128 trajectories. The five chains make
-// 80 comparisons. One of these is above 4.5 standard errors for one seed in 500, if
-// all are independent; the mean square of 6 is above 3.5 for one seed in 500, and that of more for
-// fewer. Neighbouring temperatures are not independent, so a longer chain gets no smaller bound.
+// A chain of N cells makes 2 + 2 N to 4 + 2 N comparisons, with errors from 64 runs and 128
+// trajectories. The five chains make 80 comparisons. One of these is above 4.5 standard errors for
+// one seed in 500, if all are independent; the mean square of 6 is above 3.5 for one seed in 500,
+// and that of more for fewer. Neighbouring temperatures are not independent, so a longer chain gets
+// no smaller bound.
 TEST_P(PlainChains, TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram) {
   if (GetParam() > 4 && !IsNightly()) GTEST_SKIP() << "a nightly test";
   const auto cells = static_cast<size_t>(GetParam());

@@ -13,8 +13,9 @@
 // Units: masses and temperature 1; rates are those at a contact's density of 1, so the exchange
 // rate is kContactRate. Domain: 1 <= d_a, d_b <= 100, 1 <= degree <= 40.
 // Error: kContactMatrixError. Property, with the test that bears its name:
-// 1. HighDegreesAreExactToRounding. Results from it agree with markov/generator.h (chain_gap.h) and
-// with a published value (conductivity.h).
+//   1. HighDegreesAreExactToRounding.
+// Results from this matrix agree with markov/generator.h (chain_gap.h) and with a published value
+// (conductivity.h).
 //
 // Immutable; safe to share between threads.
 #pragma once

@@ -9,8 +9,8 @@
 // the values of the spec; method_comparison.h explains the other columns, method.h the names. A
 // number reads back as the same double. The field of an unknown value is empty.
 //
-// Progress is one line on standard error, which is redrawn and cleared at the end. README.md has the
-// exit status; where a panel of the chart would be empty, all rows are printed nevertheless.
+// Progress is one line on standard error, which is redrawn, and cleared at the end. README.md has
+// the exit status. If a panel of the chart would be empty, all rows are still printed.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>

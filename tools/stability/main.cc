@@ -1,7 +1,7 @@
 // Computes the stability tables: the failures of every engine in every precision, and of the naive
-// methods, in each situation. kHelp has the arguments and the exit status. Complaints, which come
-// after the tables, are a sentence for each broken promise of an engine (no failures, no loss of
-// energy), and for each kind of failure that no method shows: its zeros prove nothing.
+// methods, in each situation. kHelp has the arguments and the exit status. Complaints come
+// after the tables. There is one for each broken promise of an engine (no failures, no loss of
+// energy), and one for each kind of failure that no method shows, because its zeros prove nothing.
 #include <algorithm>
 #include <cstdint>
 #include <exception>

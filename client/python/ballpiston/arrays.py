@@ -80,8 +80,8 @@ def parameter_arrays(points: Sequence[Any]) -> Arrays:
 def by_name(
     points: Sequence[Any], part: str, name_of: Callable[[Any], str] = attrgetter("name")
 ) -> dict[str, list[list[Any]]]:
-    """The messages in the field `part` of all points: for each name a list over the points, of the
-    messages that the point has of this name."""
+    """The messages in the field `part` of all points. For each name: a list with an item for each
+    point, the list of the point's messages of this name."""
     found: dict[str, list[list[Any]]] = {}
     for i, point in enumerate(points):
         for message in getattr(point, part):
@@ -104,7 +104,7 @@ def _estimates(points: Sequence[Any]) -> dict[str, FloatArray]:
 
 
 def _parts(points: Sequence[Any], part: str, fields: Sequence[str]) -> dict[str, FloatArray]:
-    """These fields of `part`, a message that a point may have."""
+    """The arrays of these fields of the message `part`, which a point may lack."""
     messages = [value_of(point, part) for point in points]
     return {f"{part}_{field}": column(messages, field) for field in fields}
 

@@ -78,8 +78,8 @@ def credentials_of(security: ChannelSecurity) -> Any | None:
 
 
 class Token:
-    """The token that calls send. A token file is read once, that of the user's own server for each
-    call.
+    """The token that calls send. A given token file is read once. The token of the user's own
+    server is read for each call.
 
     Raises:
         ValueError: names a file that cannot be used.
@@ -91,7 +91,7 @@ class Token:
         self._own_server = "" if security.has_tls or not is_loopback(address) else address
 
     def metadata(self) -> list[tuple[str, str]]:
-        """Of a call."""
+        """The metadata of a call."""
         token = self._given or (_own_token(self._own_server) if self._own_server else "")
         return [("authorization", f"Bearer {token}")] if token else []
 

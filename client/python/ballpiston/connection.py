@@ -1,5 +1,5 @@
 """The connection of a Client: its channel, and how a call is made. The type of a request names the
-call: GetEnsembleJobRequest is that of GetEnsembleJob.
+call: GetEnsembleJobRequest is the request of GetEnsembleJob.
 
 A private server may stop, idle, just as a call arrives, or be killed: then it is started again and
 the call is repeated once. So every call that goes through `call` has to be safe to repeat.
@@ -90,7 +90,7 @@ class Connection:
                 raise
 
     def metadata(self) -> list[tuple[str, str]]:
-        """Of a call: the token, if one is to be sent."""
+        """The metadata of a call: the token, if one is to be sent."""
         return self._token.metadata()
 
     def error_of(self, rpc_error: grpc.RpcError) -> Error:

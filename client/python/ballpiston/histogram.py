@@ -87,7 +87,7 @@ def choose_histogram(
 
 
 def _choice(histogram: Histogram) -> str:
-    """The arguments that choose it."""
+    """The arguments that choose this histogram."""
     sigma = f"sigma={histogram.sigma:+d}" if histogram.sigma else ""
     time = "" if histogram.time is None else f"time={histogram.time:.6g}"
     return ", ".join(filter(None, (sigma, time))) or "no sigma and no time"

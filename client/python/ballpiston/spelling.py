@@ -13,7 +13,8 @@ def spelling_of_name(name: str) -> str:
 
 
 def spelled(message: Any, field: str) -> str:
-    """The spelling of an enum in a message. A value of a later version is its number."""
+    """The spelling of an enum in a message. A value that only later versions know is spelled
+    as its number."""
     value = getattr(message, field)
     named = message.DESCRIPTOR.fields_by_name[field].enum_type.values_by_number.get(value)
     return str(value) if named is None else spelling_of_name(named.name)

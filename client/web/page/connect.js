@@ -55,7 +55,7 @@
     }
     if (response.ok) return response;
     const error = await response.json().catch(() => null);
-    // Without JSON: the answer is not whole, or is not the gateway's.
+    // An answer without JSON is incomplete, or is not from the gateway.
     const code = response.status < 500 ? 'invalid_argument' : 'unknown';
     throw errorOf(error ?? {message: `HTTP status ${response.status}`}, code);
   }

@@ -363,7 +363,7 @@
       const request = {name: `${this.name}/results/${index}`, unfinished: !isFinished};
       const ask = () => call('EnsembleService/GetResult', request, this.signal);
       if (isFinished) {
-        // After an error the banner shows it, or the view has changed.
+        // Null after an error: the banner shows the error, or the view has changed.
         const detailed = await keepTrying(ask, this.signal).catch(() => null);
         if (detailed) record.points.set(index, {...detailed, detailed: true});
       } else {

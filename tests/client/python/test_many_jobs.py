@@ -213,7 +213,7 @@ def test_the_collisions_of_a_job_are_read_as_records(home: Home, tmp_path: Path)
 def test_collisions_become_a_file_of_columns(
     client: ballpiston.Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Pickled, because pyarrow is not a package of Debian."""
+    """The file is a pickle, because pyarrow is not a package of Debian."""
     pandas = pytest.importorskip("pandas")
     question: dict[str, Any] = dict(rho=0.53, delta=0.2, epsilon=0.125, exponent=1, samples=2_000)
     hits = client.sample("first-hit", **question)

@@ -60,7 +60,7 @@ def test_limits_of_full_counting_are_those_of_the_closed_integrals() -> None:
 
 def test_cumulants_that_were_not_measured_are_drawn_as_such() -> None:
     order = np.array([1.0, 1, 1, 1, 2, 2, 2])
-    cells = np.array([4.0, 6, 8, 12, 4, 4, 6])  # of the variance only two chains
+    cells = np.array([4.0, 6, 8, 12, 4, 4, 6])  # the variance has only two chains
     found = {"cells": cells, "order": order, "time": np.full(7, np.inf)}
     found |= {"value": np.ones(7), "standard_error": np.full(7, 0.01)}
     fits_of_orders = full_counting.extrapolated(found, 1.5, 0.5)

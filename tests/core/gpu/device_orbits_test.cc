@@ -1,5 +1,6 @@
 // The flights of a device, computed by a processor here, give the bits of the lanes, also if the
-// device fails. tests/benchmark/gpu_benchmark.cc compares a GPU, and whole experiments.
+// device fails. tests/benchmark/gpu_benchmark.cc compares a GPU with the
+// processor, also in whole experiments.
 #include "core/gpu/device_orbits.h"
 
 #include "tests/core/billiard/each_target.h"
@@ -10,8 +11,8 @@
 namespace ballpiston {
 namespace {
 
-// From equilibrium, and with a ball at rest within the piston's reach. By the lanes of the
-// processor if there is no device.
+// Orbits from equilibrium, and every eighth from a ball at rest within the piston's reach. Without
+// a device the lanes of the processor compute them.
 class OrbitsOf : public RecordedCollisions {
  public:
   OrbitsOf(const PairGeometry& geometry, uint64_t orbits, size_t collisions, OrbitDevice* device)

@@ -99,7 +99,7 @@ TEST(Scheduler, AMissedToleranceIsReportedAfterAllPointsAreFinished) {
                                        reached)));
 }
 
-// Although the point has fewer samples than a tolerance awaits without a budget (docs/answers.md).
+// The point has fewer samples than a tolerance requires without a budget (docs/answers.md).
 TEST_F(SchedulerTest, AtTheEndOfABudgetTheStatedErrorAloneDecides) {
   const auto outcome_of = [&](int64_t key, double tolerance) {
     const EnsembleSpec spec =

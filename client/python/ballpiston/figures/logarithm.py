@@ -52,8 +52,8 @@ def measure(
     samples: float = 16_384,
     seed: int = 0,
 ) -> Tables:
-    """The parts of the integral at each delta by window, from `samples` orbits of 256 mean free
-    times, and the fits. Below delta = 0.05 the number of orbits is smaller by the factor
+    """The fits, and the parts of the integral at each delta by window, from `samples` orbits of 256
+    mean free times. Below delta = 0.05 the number of orbits is smaller by the factor
     (delta/0.05)^2, but at least 2."""
     forms = client.analytic(rho, delta)
     found = []

@@ -77,9 +77,9 @@ def _exponents(
 
 
 def _curve(client: Client, rho: float, samples: int, seed: int) -> Table:
-    """Up to delta = 0.3, or to the largest permitted one if that is smaller. With the same random
-    numbers at every delta, so that the curve is smooth; the limit, at the first delta, with more of
-    them."""
+    """The exponents up to delta = 0.3, or to the largest permitted delta if that is smaller. Every
+    delta has the same random numbers, so the curve is smooth. The limit is computed at the first
+    delta, with more samples."""
     end = min(_CURVE_END, (1 - math.sqrt(4 * rho**2 - 1)) / 2)
     deltas = [d for d in number_list("delta", _CURVE.format(end=end)) if d <= end]
     found = []

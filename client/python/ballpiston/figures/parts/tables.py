@@ -19,15 +19,16 @@ _ESTIMATE = ("name", "value", "standard_error", "exact", "noise_floor", "limit")
 
 
 def table(rows: Iterable[Mapping[str, Any]], names: Iterable[str] = ()) -> Table:
-    """Of rows, with columns of these names, else of all names in the rows. What a row lacks or has as
-    None becomes NaN."""
+    """The table of these rows: columns of these names, by default of all names in the rows. A value
+    that is absent or None becomes NaN."""
     rows = list(rows)
     names = names or dict.fromkeys(n for row in rows for n in row)
     return {n: np.array([np.nan if row.get(n) is None else row[n] for row in rows]) for n in names}
 
 
 def stacked(parts: Iterable[Mapping[str, Any]]) -> Table:
-    """One table below the other. A value in place of a column stands in all rows of its part."""
+    """One table below the other. A single value in place of a column is repeated in all rows of its
+    part."""
     tables = [dict(zip(part, np.broadcast_arrays(*part.values()))) for part in parts]
     return {n: np.concatenate([t[n] for t in tables]) for n in (tables[0] if tables else ())}
 
