@@ -73,7 +73,7 @@ std::string NameOf(const Flag& flag, Source source) {
 std::string ShellWord(const std::string& text) {
   constexpr char kPlain[] =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=@%+,-[]";
-  if (text.find_first_not_of(kPlain) == std::string::npos) return text;
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
   return absl::StrCat("'", absl::StrReplaceAll(text, {{"'", "'\\''"}}), "'");
 }
 

@@ -47,7 +47,8 @@ SortedWords SortWords(const Verb& verb, const std::vector<std::string>& words) {
       if (value->empty()) value.reset();
     } else if (flag->value.IsSwitch()) {
       value = "true";
-    } else if (next != words.end() && !IsHelp(*next) && FlagNamed(verb, NameIn(*next)) == nullptr) {
+    } else if (next != words.end() && !absl::StartsWith(*next, "--") && !IsHelp(*next) &&
+               FlagNamed(verb, NameIn(*next)) == nullptr) {
       value = *++word;
     }
     if (value) {

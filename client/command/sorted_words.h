@@ -18,8 +18,8 @@ struct SortedWords {
   bool has_help = false;                     // --help or -h
 };
 
-// --flag VALUE is the same as --flag=VALUE. A flag of the verb is never the value of another one.
-// After -- all words are arguments.
+// --flag VALUE is the same as --flag=VALUE. After a flag, neither another flag of the verb nor any
+// word that begins with -- is a value. After -- all words are arguments.
 SortedWords SortWords(const Verb& verb, const std::vector<std::string>& words);
 
 }  // namespace ballpiston::client

@@ -26,9 +26,6 @@ constexpr char kLoopback[] = "127.0.0.1";
 constexpr size_t kMostCallsPerConnection = 1000;
 // The longest time that a reader of a stream may pause.
 constexpr std::chrono::hours kPatience{1};
-// The longest pause within a request and before one. During the pause the connection keeps its
-// thread.
-constexpr int kPauseSeconds = 1;
 
 using httplib::Request;
 using httplib::Response;
@@ -110,8 +107,6 @@ class WebServer {
     server_.new_task_queue = [] { return new httplib::ThreadPool(kMostConnections); };
     server_.set_payload_max_length(kMostRequestBytes);
     server_.set_error_handler(ExplainRefusal);
-    server_.set_read_timeout(kPauseSeconds);
-    server_.set_keep_alive_timeout(kPauseSeconds);
     server_.set_write_timeout(kPatience);
     server_.set_keep_alive_max_count(kMostCallsPerConnection);
     server_.set_default_headers(SafeHeaders());

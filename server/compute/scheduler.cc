@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <utility>
 
 #include "absl/cleanup/cleanup.h"
@@ -51,6 +52,7 @@ void Scheduler::Stop(int64_t key, absl::Status why) {
 }
 
 void Scheduler::Shutdown() {
+  std::vector<Lease> dropped;  // is destroyed without the lock
   MutexLock lock(mutex_);
   if (std::exchange(shutting_down_, true)) return;
   for (const auto& [key, run] : runs_) run->Stop(absl::CancelledError("shutting down"));
@@ -58,7 +60,7 @@ void Scheduler::Shutdown() {
   while (HasTurns()) woken_.Wait(mutex_);
   for (const auto& [key, run] : runs_) {
     // The work of the leases may refer to objects that are destroyed before the scheduler.
-    DropStoppedLeases(*run);
+    std::ranges::move(DropStoppedLeases(*run), std::back_inserter(dropped));
     run->WriteCheckpoints();
   }
 }

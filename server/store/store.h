@@ -8,9 +8,10 @@
 // There are two kinds of writes. A request (`Commit`) is committed at once and fails if the disk
 // fails. A record (`Record...`) is a computed result: it may wait `delay` for others, and if the
 // disk fails, it is retried until it succeeds or the store is closed. Writes are committed in the
-// order in which they were posted; while the disk fails, requests go before records. A point's
-// checkpoint is skipped if a later checkpoint or the result of the point waits too. The space of
-// deleted jobs is freed a little at a time, by requests of the store itself (sweeper.h).
+// order in which they were posted; while the disk fails, requests do not wait for records, which
+// wait for the next retry. A point's checkpoint is skipped if a later checkpoint or the result of
+// the point waits too. The space of deleted jobs is freed a little at a time, by requests of the
+// store itself (sweeper.h).
 //
 // When the disk fails (IsOfTheDisk):
 //   - A request that fails has no visible effect. But if it failed during the flush of the log, its

@@ -111,8 +111,8 @@ void Store::WriteGroup(Writes group) {
 
 void Store::SettleFailed(Writes& group, const absl::Status& failure) {
   if (absl::IsResourceExhausted(failure)) WriteLogBack();
-  bool every_write_fits = !group.empty();
   PutBack(group);
+  bool every_write_fits = !group.empty();
   for (auto write = group.begin(); write != group.end(); ++write) {
     if (write->IsRequest()) CommitAlone(write, failure);
     every_write_fits &= !IsOfTheDisk(*write->outcome);
@@ -270,6 +270,7 @@ void Store::NoteHealth(const absl::Status& status) {
     if (!failing_ || !works) return;
     failing_ = false;
     failure_.clear();
+    if (!waiting_.empty()) due_ = SteadyNow();
     return LogInfo("store: the disk works again");
   }
   failing_ = true;
