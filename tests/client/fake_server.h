@@ -33,7 +33,7 @@ v1::EnsembleJob JobIn(v1::EnsembleJob::State state);
 // final status only when the server stops.
 struct WatchScript {
   std::vector<v1::WatchEnsembleJobResponse> messages;
-  grpc::Status end;
+  grpc::Status end = {};
   bool hangs = false;
 };
 
