@@ -96,7 +96,7 @@ struct LeaseReport {
 // The work that an executor can take now, in seconds of one core at nominal speed.
 struct Capacity {
   bool local = true;  // the threads are this process's
-  // Of a local executor: makes the work of a new lease, which its turns share from now on.
+  // Makes the work of a new lease that the threads here compute. All turns at the lease share it.
   std::function<std::shared_ptr<SharedWork>(const Lease&)> share = {};
   bool waits = false;  // Scheduler::Next waits until there is a lease
   // A lease has the fewest chunks that take as long as this.

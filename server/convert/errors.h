@@ -49,7 +49,7 @@ inline constexpr FixedError ResultNotFound = {
 inline constexpr FixedError ResultsExpired = {
     absl::StatusCode::kFailedPrecondition, "RESULTS_EXPIRED", "name",
     "the results of $0 have expired; submit its specification again"};
-// Of a job and its state.
+// For the next two, $0 is the job's name and $1 its state.
 inline constexpr FixedError JobAlreadyEnded = {absl::StatusCode::kFailedPrecondition,
                                                "JOB_ALREADY_ENDED", "state",
                                                "$0 has ended already: it is $1"};
