@@ -13,7 +13,9 @@ namespace ballpiston {
 class TemporaryFolder {
  public:
   // Throws std::runtime_error if no folder can be made.
-  TemporaryFolder() : path_(std::filesystem::temp_directory_path() / "ballpiston-XXXXXX") {
+  explicit TemporaryFolder(
+      const std::filesystem::path& parent = std::filesystem::temp_directory_path())
+      : path_(parent / "ballpiston-XXXXXX") {
     if (mkdtemp(path_.data()) == nullptr) throw std::runtime_error("no folder at " + path_);
   }
   // Removes the folder and its contents.
