@@ -84,7 +84,10 @@ struct Balls {
   static void SetBit(uint32_t& bits, size_t lane, bool bit) {
     bits = (bits & ~(uint32_t{1} << lane)) | uint32_t{bit} << lane;
   }
-  static double Sign(uint32_t bits, size_t lane) { return (bits >> lane & 1) != 0 ? -1 : 1; }
+  // Without a branch, which would be mispredicted half of the time.
+  static double Sign(uint32_t bits, size_t lane) {
+    return 1 - 2 * static_cast<double>(static_cast<int>(bits >> lane & 1));
+  }
 };
 
 template <class D>

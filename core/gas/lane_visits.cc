@@ -65,6 +65,7 @@ class LanesAhead : public FlightsAhead {
     if (HWY_UNLIKELY(burst_.left_cell())) FindLostBalls();
     std::fill_n(visitors_, vectors_, 0);
     FindCollisions();
+    CountFlights();
     for (size_t i = 0; i < orders_.size(); ++i) Finish(i);
   }
 
@@ -221,6 +222,20 @@ class LanesAhead : public FlightsAhead {
                       .piston_goes_right = collision->piston_goes_right};
   }
 
+  // The flights that begin before the ball may stop; paths only grow.
+  void CountFlights() {
+    const D d;
+    for (size_t slot = 0; slot < vectors_; ++slot) {
+      const auto until = hn::Load(d, until_ + slot * Width());
+      auto begun = hn::Zero(d);
+      for (size_t flight = 1; flight <= flights_; ++flight) {
+        const auto path = hn::Load(d, burst_.slot(slot + flight * kVectors).path);
+        begun = hn::Add(begun, hn::IfThenElseZero(hn::Le(path, until), hn::Set(d, 1)));
+      }
+      hn::Store(begun, d, begun_ + slot * Width());
+    }
+  }
+
   // The ball's state before the flight in which it arrives. A ball that meets a piston does not fly
   // on: the exchange changes its way.
   void Finish(size_t i) const {
@@ -230,14 +245,11 @@ class LanesAhead : public FlightsAhead {
     ball.visits |= visitors_[i / Width()] >> lane & kEveryDirection;
     order.has_arrived = ball.collision.time < kNever;
     if (order.has_arrived) return;
-    const auto is_beyond = [&](size_t flight) {
-      return burst_.slot(SlotOf(i, flight)).path[lane] > until_[i];
-    };
-    size_t flight = end_[i];
-    order.has_escaped = flight < flights_ && !is_beyond(flight);
-    order.has_arrived = order.has_escaped || is_beyond(flight);
-    while (flight > 0 && is_beyond(flight)) --flight;
-    const size_t slot = SlotOf(i, flight);
+    const auto begun = static_cast<size_t>(begun_[i]);
+    const bool is_beyond = begun < end_[i];
+    order.has_escaped = end_[i] < flights_ && !is_beyond;
+    order.has_arrived = order.has_escaped || is_beyond;
+    const size_t slot = SlotOf(i, std::min(begun, end_[i]));
     ball.to = {.frame = burst_.slot(slot).Frame(lane),
                .path = burst_.slot(slot).path[lane],
                .is_in_reach = (burst_.in_reach(slot) >> lane & 1) != 0};
@@ -256,7 +268,8 @@ class LanesAhead : public FlightsAhead {
   uint32_t visitors_[kVectors];  // lanes whose balls came within reach, as in MayHaveMetPistons
   // By order: the path length at which the ball may stop, and the number of flights in which it may
   // still meet a piston for the first time.
-  double until_[kVectors * kMostLanes<double>];
+  HWY_ALIGN double until_[kVectors * kMostLanes<double>];
+  HWY_ALIGN double begun_[kVectors * kMostLanes<double>];
   size_t end_[kVectors * kMostLanes<double>];
 };
 
