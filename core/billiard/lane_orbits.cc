@@ -30,10 +30,10 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // The lanes fly in bursts of some flights each (lane_burst-inl.h). After a burst the engine
-// examines the flights that began or ended in the piston's reach, resolves the collisions that it
-// finds, and gives the lanes their next orbits. So collisions and starts come in batches, and the
-// flights have no branches. After a collision the ball may be anywhere in the cell (FrameOfBall);
-// the lanes accept such a state.
+// examines the flights that began or ended in the piston's reach, reports the collisions that it
+// finds to the source, and gives the lanes their next orbits. So the flights have no branches.
+// After a collision the ball may be anywhere in the cell (FrameOfBall); the lanes accept such a
+// state.
 //
 // An orbit enters at the beginning of a burst, and every burst has the same number of flights. So
 // the rounding at the end of a burst occurs at the same flights of the orbit in every lane.
@@ -91,6 +91,11 @@ class LaneOrbits : public EngineRun {
     uint32_t lanes;                        // that have orbits
   };
 
+  struct Entry {
+    size_t lane;
+    OrbitStart start;
+  };
+
   size_t VectorOf(size_t lane) const { return lane / Width(); }
   size_t InVector(size_t lane) const { return lane % Width(); }
   bool IsRunning() const { return idle_.size() < orbit_.size(); }
@@ -101,7 +106,7 @@ class LaneOrbits : public EngineRun {
     Fly();
     LookAtFlights();
     EndBurst();
-    if (!collisions_.empty()) Refill();
+    if (!entries_.empty() || parked_ < idle_.size()) Refill();
   }
 
   // Only the arcs at the right tip can be in the piston's reach. The ball is on such an arc if a <
@@ -227,11 +232,17 @@ class LaneOrbits : public EngineRun {
     }
   }
 
-  // The orbit leaves the lane; Resolve reports the collision to the source.
+  // The orbit leaves the lane. If it goes on, it enters again before the next burst.
   void Report(size_t lane, const Collision& collision) {
     pistons_[VectorOf(lane)].lanes &= ~(uint32_t{1} << InVector(lane));
-    collisions_.push_back({orbit_[lane].orbit, collision});
-    collided_.push_back(lane);
+    --calls_left_;
+    const uint64_t orbit = orbit_[lane].orbit;
+    const AfterCollision after = source_.Collide(orbit, collision);
+    if (after == AfterCollision::kEnd || collision.escaped || collision.expired) {
+      idle_.push_back(lane);
+    } else {
+      entries_.push_back({lane, {orbit, AfterExchange(collision.state, 1.0)}});
+    }
   }
 
   // The collision of ball and piston of the lane in flight t, if they meet.
@@ -239,7 +250,7 @@ class LaneOrbits : public EngineRun {
     const size_t i = InVector(lane);
     const Pistons& piston = pistons_[VectorOf(lane)];
     const Balls<T>& from = burst_.slot(t);
-    const std::optional<OrbitInLane::Meeting> met = in_lane_.Meet(
+    std::optional<OrbitInLane::Meeting> met = in_lane_.Meet(
         orbit_[lane],
         {.ball = from.Frame(i),
          .phase = PhaseOf(piston, i, from.path[i]),
@@ -248,18 +259,9 @@ class LaneOrbits : public EngineRun {
          .flights = (bursts_ - 1 - entry_burst_[lane]) * flights_ + t / kVectors});
     if (!met) return std::nullopt;
     if constexpr (kFollowsTangents) {
-      const bool is_overdue = met->collision.escaped || met->collision.expired;
-      if (!is_overdue) {
-        source_.FollowWait(orbit_[lane].orbit,
-                           tangents_.MapTo(burst_, t, i, met->way, flight_constants_.scale));
-      }
+      met->collision.flights = tangents_.MapTo(burst_, t, i, met->way, flight_constants_.scale);
     }
     return met->collision;
-  }
-
-  void CollideIfAtRest(size_t lane, const PairState& start) {
-    const std::optional<Collision> collision = in_lane_.MeetAtRest(orbit_[lane], start);
-    if (collision) Report(lane, *collision);
   }
 
   // The piston's phase when the ball has gone `path` in this burst, in periods, at least 0 and
@@ -274,54 +276,35 @@ class LaneOrbits : public EngineRun {
 
   // ---- between bursts ----
 
-  // Reports the orbits that have left the lanes to the source, and gives the lanes new orbits. An
-  // orbit that starts outside of the cell, or with a ball at rest, leaves at once. If there are
-  // very many such orbits, the next call of Refill reports the last of them.
+  // Gives the lanes their next orbits. An orbit with a ball at rest collides at once. If there are
+  // very many such orbits, the next call of Refill starts the rest.
   void Refill() {
-    do {
-      Resolve();
-      StartNew();
-    } while (calls_left_ > 0 && !collisions_.empty());
+    while (!entries_.empty() || StartNew()) {
+      const auto [lane, start] = entries_.back();
+      entries_.pop_back();
+      Enter(lane, start);
+      const std::optional<Collision> met = in_lane_.MeetAtRest(orbit_[lane], start.state);
+      if (met) Report(lane, *met);
+    }
     for (; parked_ < idle_.size(); ++parked_) Park(idle_[parked_]);
   }
 
-  void Resolve() {
-    if (collisions_.empty()) return;
-    source_.Collide(collisions_);
-    calls_left_ -= static_cast<int64_t>(collisions_.size());
-    reported_.swap(collisions_);
-    reported_lanes_.swap(collided_);
-    for (size_t i = 0; i < reported_.size(); ++i) {
-      const Collision& collision = reported_[i].collision;
-      if (reported_[i].after == AfterCollision::kEnd || collision.escaped || collision.expired) {
-        idle_.push_back(reported_lanes_[i]);
-      } else {
-        const OrbitStart start = {reported_[i].orbit, AfterExchange(collision.state, 1.0)};
-        Enter(reported_lanes_[i], start);
-        CollideIfAtRest(reported_lanes_[i], start.state);
+  // Takes an orbit for an idle lane. An orbit that starts outside of the cell escapes at once.
+  bool StartNew() {
+    while (calls_left_ > 0 && !source_is_empty_ && !idle_.empty()) {
+      const std::optional<OrbitStart> start = source_.Next();
+      source_is_empty_ = !start;
+      if (!start) return false;
+      --calls_left_;
+      if (InsideCell(geometry_, start->state.position, kOnAWallAtStart)) {
+        entries_.push_back({idle_.back(), *start});
+        idle_.pop_back();
+        parked_ = std::min(parked_, idle_.size());
+        return true;
       }
+      source_.Collide(start->orbit, OrbitInLane::Escape());
     }
-    reported_.clear();
-    reported_lanes_.clear();
-  }
-
-  void StartNew() {
-    if (source_is_empty_ || idle_.empty()) return;
-    starts_.resize(idle_.size());
-    const size_t started = source_.Start(starts_);
-    source_is_empty_ = started < starts_.size();
-    calls_left_ -= static_cast<int64_t>(started);
-    for (size_t i = 0; i < started; ++i) {
-      const size_t lane = idle_.back();
-      idle_.pop_back();
-      parked_ = std::min(parked_, idle_.size());
-      Enter(lane, starts_[i]);
-      if (InsideCell(geometry_, starts_[i].state.position, kOnAWallAtStart)) {
-        CollideIfAtRest(lane, starts_[i].state);
-      } else {
-        Report(lane, OrbitInLane::Escape());
-      }
-    }
+    return false;
   }
 
   void Enter(size_t lane, const OrbitStart& start) {
@@ -386,13 +369,9 @@ class LaneOrbits : public EngineRun {
   std::vector<uint64_t> entry_burst_;  // by lane
   std::vector<size_t> idle_;           // lanes without an orbit
   size_t parked_ = 0;                  // of them, the first ones
-  bool source_is_empty_ = false;       // at the last call of Start
-  std::vector<size_t> collided_;       // lanes of the collisions
-  std::vector<OrbitCollision> collisions_;
-  int64_t calls_left_ = 0;              // starts and collisions until the next call of Pause
-  std::vector<size_t> reported_lanes_;  // of the collisions that Resolve is resolving
-  std::vector<OrbitCollision> reported_;
-  std::vector<OrbitStart> starts_;
+  std::vector<Entry> entries_;         // before the next burst
+  bool source_is_empty_ = false;       // at the last call of Next
+  int64_t calls_left_ = 0;             // starts and collisions until the next call of Pause
   std::conditional_t<kFollowsTangents, LaneTangents<T>, std::monostate> tangents_;
 };
 

@@ -31,31 +31,31 @@ class ReferenceOrbits : public EngineRun {
 
  private:
   bool Begin() {
-    OrbitStart start;
-    if (source_.Start({&start, 1}) == 0) return false;
-    flow_.emplace(geometry_, start.state);
-    current_ = {.orbit = start.orbit};
-    longest_ = HasTimeLimit() ? limit_ : longest_wait_.From(start.state);
+    const std::optional<OrbitStart> start = source_.Next();
+    if (!start) return false;
+    orbit_ = start->orbit;
+    flow_.emplace(geometry_, start->state);
+    collision_ = {};
+    longest_ = HasTimeLimit() ? limit_ : longest_wait_.From(start->state);
     return true;
   }
   bool HasTimeLimit() const { return limit_ < std::numeric_limits<double>::infinity(); }
 
   void Step() {
-    Collision& collision = current_.collision;
     const Event event = flow_->Step();
-    collision.Add(event);
-    if (follows_tangents_) source_.FollowEvent(current_.orbit, event, flow_->state());
-    const bool is_overdue = collision.time > longest_;
-    collision.expired = is_overdue && HasTimeLimit();
-    collision.escaped |= is_overdue && !HasTimeLimit();
-    const bool has_ended = collision.escaped || collision.expired;
+    collision_.Add(event);
+    if (follows_tangents_) source_.FollowEvent(orbit_, event, flow_->state());
+    const bool is_overdue = collision_.time > longest_;
+    collision_.expired = is_overdue && HasTimeLimit();
+    collision_.escaped |= is_overdue && !HasTimeLimit();
+    const bool has_ended = collision_.escaped || collision_.expired;
     if (event.kind != EventKind::kBallPiston && !has_ended) return;
-    collision.state = flow_->state();
-    source_.Collide({&current_, 1});
-    if (current_.after == AfterCollision::kEnd || has_ended) return flow_.reset();
+    collision_.state = flow_->state();
+    const AfterCollision after = source_.Collide(orbit_, collision_);
+    if (after == AfterCollision::kEnd || has_ended) return flow_.reset();
     flow_->ExchangeComponents();
     if (!HasTimeLimit()) longest_ = longest_wait_.From(flow_->state());
-    collision = {};
+    collision_ = {};
   }
 
   PairGeometry geometry_;
@@ -64,8 +64,9 @@ class ReferenceOrbits : public EngineRun {
   bool follows_tangents_;
   LongestWait longest_wait_;
   double longest_ = 0;  // of the current wait
+  uint64_t orbit_ = 0;
   std::optional<ReferenceFlow> flow_;
-  OrbitCollision current_;
+  Collision collision_;  // the next one, so far
 };
 
 std::unique_ptr<EngineRun> StartLanes(const PairGeometry& geometry, OrbitSource& source) {

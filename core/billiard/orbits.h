@@ -15,11 +15,10 @@
 // orbits agree for about 30 wall hits, then only in law.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <span>
+#include <optional>
 
 #include "core/billiard/event_flow.h"
 #include "core/billiard/tangent_map.h"
@@ -51,6 +50,9 @@ struct Collision {
   bool escaped = false;
   bool expired = false;  // no collision within the time limit; `state` is meaningless, and `time`
                          // means only that the limit has passed
+  // Of the ball since the orbit's start or its previous collision. Only in the lanes, if the source
+  // follows tangents; else, and of a ball at rest, the identity.
+  BallMap flights = {};
 
   void Add(const Event& event);  // adds an event before the collision
 };
@@ -63,46 +65,35 @@ struct OrbitStart {
   PairState state = {};
 };
 
-// A collision of orbit `orbit`. The source sets `after`. kGoOn: ball and piston exchange
-// components, and the orbit continues. An orbit that escaped or expired ends for any value of
-// `after`.
-struct OrbitCollision {
-  uint64_t orbit = 0;
-  Collision collision = {};
-  AfterCollision after = AfterCollision::kEnd;
-};
-
 class OrbitDevice;
 
-// Supplies the starts of orbits and receives their collisions, both in batches. The thread that
-// runs the orbits calls the source. The order of calls for different orbits depends on the engine,
-// so a source must keep its measurements by orbit and combine them in the order of the orbits'
-// numbers.
+// Supplies the starts of orbits and receives their collisions. The thread that runs the orbits
+// calls the source. The order of calls for different orbits depends on the engine, so a source must
+// keep its measurements by orbit and combine them in the order of the orbits' numbers.
 class OrbitSource {
  public:
   virtual ~OrbitSource() = default;
-  // Fills the first elements of `starts` and returns their number. A number below starts.size()
-  // means that the source has no more orbits now. The lanes ask again about 0.2 ms later, as long
-  // as they have other orbits in progress.
-  virtual size_t Start(std::span<OrbitStart> starts) = 0;
-  virtual void Collide(std::span<OrbitCollision> collisions) = 0;
+  // The next orbit. Empty if the source has no more orbits now; the lanes ask again about 0.2 ms
+  // later, as long as they have other orbits in progress.
+  virtual std::optional<OrbitStart> Next() = 0;
+  // kGoOn: ball and piston exchange components, and the orbit continues. An orbit that escaped or
+  // expired ends for any answer.
+  virtual AfterCollision Collide(uint64_t orbit, const Collision& collision) = 0;
   // An orbit expires after this time without a collision: the source receives an expired collision,
   // and the orbit ends. The expired collision may come later than the limit. Without a limit an
   // orbit waits for LongestWait (longest_wait.h), and is then reported as escaped. So every orbit
   // ends.
   virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
   // Whether the source follows tangent vectors. If so, the reference calls FollowEvent after each
-  // event, at a collision before Collide. The lanes call FollowWait before they report a collision,
-  // with the map of the ball's flights since the orbit's start or its previous collision. A ball at
-  // rest has no flights, and no call.
+  // event, at a collision before Collide. The lanes report the map of the ball's flights with each
+  // collision.
   virtual bool FollowsTangents() const { return false; }
   virtual void FollowEvent(uint64_t /*orbit*/, const Event&, const PairState& /*after*/) {}
-  virtual void FollowWait(uint64_t /*orbit*/, const BallMap&) {}
   // The device that computes the flights of kLanes instead of the processor; null: none. Orbits
   // with tangents never use it. It must outlive the run.
   virtual OrbitDevice* Device() const { return nullptr; }
   // True if the engine should return. The engine asks about 5000 times a second, and at least every
-  // 0.05 s if a call of Start or Collide takes at most 10 us for each orbit.
+  // 0.05 s if a call of Next or Collide takes at most 10 us.
   virtual bool Pause() = 0;
 };
 

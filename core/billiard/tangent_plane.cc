@@ -7,22 +7,25 @@
 #include "core/arithmetic/elementary_functions.h"
 
 namespace ballpiston {
+namespace {
+
+// (a, A) after the ball's flights, without the factor 2^exponent.
+Eigen::Vector2d AfterFlights(const BallMap& flights, const Eigen::Vector2d& ball,
+                             double ball_speed) {
+  const auto& [aa, at, ta, tt, exponent] = flights;
+  return {aa * ball[0] + at / ball_speed * ball[1], ta * ball_speed * ball[0] + tt * ball[1]};
+}
+
+}  // namespace
 
 void TangentPlane::Collide(const Collision& collision) {
   const bool is_odd = ((collision.ball_wall_hits ^ collision.piston_wall_hits) & 1) != 0;
-  Wait(collision.state.ball_speed, collision.time, is_odd ? -1 : 1);
-  flights_ = {};
+  Wait(collision.flights, collision.state.ball_speed, collision.time, is_odd ? -1 : 1);
   Exchange(collision.state);
 }
 
 std::array<double, TangentPlane::kExponents> TangentPlane::TakeGrowth() {
   return std::exchange(growth_, {});
-}
-
-// (a, A) after the ball's flights, without the factor 2^exponent.
-Eigen::Vector2d TangentPlane::AfterFlights(const Eigen::Vector2d& ball, double ball_speed) const {
-  const auto& [aa, at, ta, tt, exponent] = flights_;
-  return {aa * ball[0] + at / ball_speed * ball[1], ta * ball_speed * ball[0] + tt * ball[1]};
 }
 
 // After the wait the vectors are (2^exponent y1, n1) and (2^exponent y2, n2). With y1 = m u, u of
@@ -32,12 +35,12 @@ Eigen::Vector2d TangentPlane::AfterFlights(const Eigen::Vector2d& ball, double b
 // has the parts n2 - share n1 and, along u and across it,
 //   h (alpha n1.n1 - m n1.n2)/r^2   and   h (x1 x x2)/m,
 // the latter because the determinant of the flights is 1: x1 and x2 are (a, A) before the wait.
-void TangentPlane::Wait(double ball_speed, double time, double sign) {
+void TangentPlane::Wait(const BallMap& flights, double ball_speed, double time, double sign) {
   auto& [first, second] = tangents_;
-  const double h = std::ldexp(1.0, -static_cast<int>(std::fmin(flights_.exponent, 2000)));
+  const double h = std::ldexp(1.0, -static_cast<int>(std::fmin(flights.exponent, 2000)));
   const double cross = first.ball[0] * second.ball[1] - first.ball[1] * second.ball[0];
-  const Eigen::Vector2d y1 = AfterFlights(first.ball, ball_speed);
-  const Eigen::Vector2d y2 = AfterFlights(second.ball, ball_speed);
+  const Eigen::Vector2d y1 = AfterFlights(flights, first.ball, ball_speed);
+  const Eigen::Vector2d y2 = AfterFlights(flights, second.ball, ball_speed);
   for (Tangent& tangent : tangents_) {
     tangent.both[0] += time * tangent.both[1];
     tangent.both *= sign;
@@ -53,7 +56,7 @@ void TangentPlane::Wait(double ball_speed, double time, double sign) {
   const double rest = std::sqrt(second.ball.squaredNorm() + second.both.squaredNorm());
   second = {second.ball / rest, second.both / rest};
   first = {y1 / r, n1 * (h / r)};
-  growth_[0] += Log(r) + flights_.exponent * std::numbers::ln2;
+  growth_[0] += Log(r) + flights.exponent * std::numbers::ln2;
   growth_[1] += Log(rest);
 }
 

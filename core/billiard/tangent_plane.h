@@ -41,8 +41,7 @@ class TangentPlane {
   TangentPlane() = default;
   TangentPlane(const PairGeometry&, const PairState& /*start*/) {}
 
-  // The map of the ball's flights in a wait, and then the collision that ends it.
-  void Follow(const BallMap& flights) { flights_ = flights; }
+  // A wait, and the collision that ends it.
   void Collide(const Collision& collision);
 
   // The logarithms of the factors by which the two directions have grown since the last call.
@@ -54,12 +53,10 @@ class TangentPlane {
     Eigen::Vector2d both;  // (b, B)
   };
 
-  Eigen::Vector2d AfterFlights(const Eigen::Vector2d& ball, double ball_speed) const;
-  void Wait(double ball_speed, double time, double sign);
+  void Wait(const BallMap& flights, double ball_speed, double time, double sign);
   void Exchange(const PairState& before);
 
   std::array<Tangent, kExponents> tangents_ = {{{{0, 1}, {0, 0}}, {{0, 0}, {0, 1}}}};
-  BallMap flights_;  // of the wait
   std::array<double, kExponents> growth_ = {};
 };
 

@@ -8,7 +8,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/billiard/orbits.h"
@@ -34,10 +33,9 @@ struct OrbitSamples {
 //   PairState Start(const Context&, const OrbitSamples&);                     called once
 //   AfterCollision Collide(const Context&, const Collision&);                 not for an escape
 //   void AddTo(const Context&, BlockResult&) const;    in their order, after all orbits have ended
-// An orbit with tangent vectors has them in a std::optional `tangents`. They have one of these
-// functions, for the events of the reference or the waits of the lanes (OrbitSource):
+// An orbit with tangent vectors has them in a std::optional `tangents`. Those of the reference
+// (OrbitSource::FollowEvent) have this function:
 //   void Follow(const Event& event, const PairState& after);
-//   void Follow(const BallMap& flights);
 template <typename Orbit, typename Context>
 class BlockOrbits {
  public:
@@ -106,37 +104,27 @@ class OrbitRun : public EngineRun, private OrbitSource {
   bool Advance() override { return run_->Advance(); }
 
  private:
-  size_t Start(std::span<OrbitStart> starts) override {
-    for (size_t n = 0; n < starts.size(); ++n) {
-      const std::optional<uint64_t> orbit = blocks_.Next();
-      if (!orbit) return n;
-      starts[n] = {*orbit, blocks_.WorkOf(*orbit).Start(blocks_.IndexOf(*orbit))};
-    }
-    return starts.size();
+  std::optional<OrbitStart> Next() override {
+    const std::optional<uint64_t> orbit = blocks_.Next();
+    if (!orbit) return std::nullopt;
+    return OrbitStart{*orbit, blocks_.WorkOf(*orbit).Start(blocks_.IndexOf(*orbit))};
   }
 
-  void Collide(std::span<OrbitCollision> collisions) override {
-    for (auto& [orbit, collision, after] : collisions) {
-      if (observer_ != nullptr) {
-        observer_->Observe(blocks_.BlockOf(orbit), blocks_.IndexOf(orbit), collision);
-      }
-      after = blocks_.WorkOf(orbit).Collide(blocks_.IndexOf(orbit), collision);
-      if (after == AfterCollision::kEnd) blocks_.End(orbit);
-    }
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    const uint64_t index = blocks_.IndexOf(orbit);
+    if (observer_ != nullptr) observer_->Observe(blocks_.BlockOf(orbit), index, collision);
+    const AfterCollision after = blocks_.WorkOf(orbit).Collide(index, collision);
+    if (after == AfterCollision::kEnd) blocks_.End(orbit);
+    return after;
   }
 
   bool FollowsTangents() const override {
     return requires(Orbit orbit) { orbit.tangents; };
   }
-  void FollowEvent(uint64_t orbit, const Event& event, const PairState& after) override {
-    Follow(orbit, event, after);
-  }
-  void FollowWait(uint64_t orbit, const BallMap& flights) override { Follow(orbit, flights); }
-  template <typename... Followed>
-  void Follow(uint64_t number, const Followed&... followed) {
+  void FollowEvent(uint64_t number, const Event& event, const PairState& after) override {
     Orbit& orbit = blocks_.WorkOf(number)[blocks_.IndexOf(number)];
-    if constexpr (requires { orbit.tangents->Follow(followed...); }) {
-      orbit.tangents->Follow(followed...);
+    if constexpr (requires { orbit.tangents->Follow(event, after); }) {
+      orbit.tangents->Follow(event, after);
     }
   }
 

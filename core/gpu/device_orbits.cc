@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -16,7 +15,7 @@ namespace {
 // Flights of a lane in a launch, at most: some milliseconds.
 constexpr size_t kMostFlightsInALaunch = 2048;
 
-// Calls of the source's Start, for one orbit each, between two calls of Pause.
+// Calls of the source's Next between two calls of Pause.
 constexpr size_t kStartsBetweenLooks = 8192;
 
 // Rounding of a path must not end an orbit that its collision would end in time.
@@ -39,30 +38,9 @@ bool EndsBurst(const FlightProgram& program, FlightReport& report) {
   return report.news == FlightNews::kNone;
 }
 
-// The orbits that were in progress when the device failed, then those of the source.
-class Restarts : public OrbitSource {
- public:
-  Restarts(std::vector<OrbitStart> starts, OrbitSource& source)
-      : starts_(std::move(starts)), source_(source) {}
-
-  size_t Start(std::span<OrbitStart> starts) override {
-    const size_t n = std::min(starts.size(), starts_.size());
-    for (size_t i = 0; i < n; ++i) {
-      starts[i] = starts_.back();
-      starts_.pop_back();
-    }
-    return n == starts.size() ? n : n + source_.Start(starts.subspan(n));
-  }
-  void Collide(std::span<OrbitCollision> collisions) override { source_.Collide(collisions); }
-  double TimeLimit() const override { return source_.TimeLimit(); }
-  bool Pause() override { return source_.Pause(); }
-
- private:
-  std::vector<OrbitStart> starts_;
-  OrbitSource& source_;
-};
-
-class DeviceRun : public EngineRun {
+// After a failure of the device a run is the source of the lanes: first with the orbits that were
+// in progress, then with those of its own source.
+class DeviceRun : public EngineRun, private OrbitSource {
  public:
   DeviceRun(const PairGeometry& geometry, OrbitSource& source, std::unique_ptr<FlightBatch> batch,
             std::function<void(const absl::Status&)> fail)
@@ -79,7 +57,7 @@ class DeviceRun : public EngineRun {
     do {
       source_is_empty_ = false;
       if (is_flying_ && !Land()) return lanes_->Advance();
-      Refill();
+      StartNew();
       if (in_progress_ == 0 && source_is_empty_) return true;
       if (in_progress_ > 0 && !Launch()) return lanes_->Advance();
     } while (!source_.Pause());
@@ -127,15 +105,25 @@ class DeviceRun : public EngineRun {
   // Always false.
   bool GoOnInLanes(const absl::Status& status) {
     fail_(status);
-    std::vector<OrbitStart> starts;
     for (const OrbitInProgress& orbit : orbits_) {
-      if (orbit.is_in_progress) starts.push_back(orbit.start);
+      if (orbit.is_in_progress) restarts_.push_back(orbit.start);
     }
     batch_.reset();
-    restarts_ = std::make_unique<Restarts>(std::move(starts), source_);
-    lanes_ = StartLaneOrbits(geometry_, *restarts_);
+    lanes_ = StartLaneOrbits(geometry_, *this);
     return false;
   }
+
+  std::optional<OrbitStart> Next() override {
+    if (restarts_.empty()) return source_.Next();
+    const OrbitStart start = restarts_.back();
+    restarts_.pop_back();
+    return start;
+  }
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    return source_.Collide(orbit, collision);
+  }
+  double TimeLimit() const override { return source_.TimeLimit(); }
+  bool Pause() override { return source_.Pause(); }
 
   // ---- reports ----
 
@@ -167,61 +155,40 @@ class DeviceRun : public EngineRun {
 
   // Always true.
   bool Report(uint32_t number, const Collision& collision) {
-    collisions_.push_back({orbits_[number].orbit.orbit, collision});
-    collided_.push_back(number);
+    OrbitInProgress& reported = orbits_[number];
+    const uint64_t orbit = reported.orbit.orbit;
+    const AfterCollision after = source_.Collide(orbit, collision);
+    if (after == AfterCollision::kEnd || collision.escaped || collision.expired) {
+      reported.is_in_progress = false;
+      free_.push_back(number);
+      --in_progress_;
+    } else {
+      Enter(number, {orbit, AfterExchange(collision.state, 1.0)});
+    }
     return true;
   }
 
   // ---- starts ----
 
-  void Refill() {
-    size_t calls_left = kStartsBetweenLooks;
-    do {
-      Resolve();
-      StartNew(calls_left);
-    } while (!collisions_.empty());
-  }
-
-  void Resolve() {
-    if (collisions_.empty()) return;
-    source_.Collide(collisions_);
-    reported_.swap(collisions_);
-    reported_numbers_.swap(collided_);
-    for (size_t i = 0; i < reported_.size(); ++i) {
-      const Collision& collision = reported_[i].collision;
-      const uint32_t number = reported_numbers_[i];
-      if (reported_[i].after == AfterCollision::kEnd || collision.escaped || collision.expired) {
-        orbits_[number].is_in_progress = false;
-        free_.push_back(number);
-        --in_progress_;
-      } else {
-        Enter(number, {reported_[i].orbit, AfterExchange(collision.state, 1.0)});
-      }
-    }
-    reported_.clear();
-    reported_numbers_.clear();
-  }
-
-  void StartNew(size_t& calls_left) {
+  void StartNew() {
     const size_t wanted = batch_->lanes() - lanes_with_orbits_ + reserve_;
-    if (source_is_empty_ || queue_.size() >= wanted) return;
-    starts_.resize(std::min(wanted - queue_.size(), calls_left));
-    const size_t started = source_.Start(starts_);
-    source_is_empty_ = started < starts_.size();
-    calls_left -= started;
-    for (size_t i = 0; i < started; ++i) StartOne(starts_[i]);
+    for (size_t i = 0; i < kStartsBetweenLooks && queue_.size() < wanted; ++i) {
+      const std::optional<OrbitStart> start = source_.Next();
+      source_is_empty_ = !start;
+      if (!start) return;
+      StartOne(*start);
+    }
   }
 
   void StartOne(const OrbitStart& start) {
+    if (!InsideCell(geometry_, start.state.position, kOnAWallAtStart)) {
+      source_.Collide(start.orbit, OrbitInLane::Escape());
+      return;
+    }
     const uint32_t number = NewNumber();
     orbits_[number].is_in_progress = true;
     ++in_progress_;
-    if (InsideCell(geometry_, start.state.position, kOnAWallAtStart)) {
-      Enter(number, start);
-    } else {
-      orbits_[number].orbit.orbit = start.orbit;
-      Report(number, OrbitInLane::Escape());
-    }
+    Enter(number, start);
   }
 
   uint32_t NewNumber() {
@@ -234,6 +201,7 @@ class DeviceRun : public EngineRun {
     return number;
   }
 
+  // A ball at rest collides at once. After the exchange it has the piston's speed.
   void Enter(uint32_t number, const OrbitStart& start) {
     OrbitInProgress& entered = orbits_[number];
     entered.start = start;
@@ -271,11 +239,8 @@ class DeviceRun : public EngineRun {
   std::vector<uint32_t> free_;           // numbers
   size_t in_progress_ = 0;
   bool source_is_empty_ = false;
-  std::vector<OrbitCollision> collisions_, reported_;
-  std::vector<uint32_t> collided_, reported_numbers_;
-  std::vector<OrbitStart> starts_;
   // After a failure of the device.
-  std::unique_ptr<Restarts> restarts_;
+  std::vector<OrbitStart> restarts_;
   std::unique_ptr<EngineRun> lanes_;
 };
 

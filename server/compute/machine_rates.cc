@@ -1,8 +1,8 @@
 // Measures the sampling rates of this machine.
 #include <algorithm>
 #include <cassert>
-#include <cstddef>
-#include <span>
+#include <cstdint>
+#include <optional>
 
 #include "core/billiard/orbits.h"
 #include "core/ensemble/point_experiment.h"
@@ -28,25 +28,32 @@ EnsembleSpec SpecOf(const ExperimentKind& experiment, Model model, double delta)
   return spec;
 }
 
-// Counts the orbits for which an engine asks at first, and has none.
-class NoOrbits : public OrbitSource {
+// Counts the orbits that an engine starts before the first one ends.
+class FirstOrbits : public OrbitSource {
  public:
-  size_t Start(std::span<OrbitStart> starts) override {
-    lanes_ = std::max(lanes_, starts.size());
-    return 0;
+  explicit FirstOrbits(const PairGeometry& geometry) : geometry_(geometry) {}
+  // The piston rests out of the ball's reach.
+  std::optional<OrbitStart> Next() override {
+    if (one_has_ended_) return std::nullopt;
+    return OrbitStart{count_++, {.ball_speed = 1, .piston = geometry_.tip()}};
   }
-  void Collide(std::span<OrbitCollision>) override {}
+  AfterCollision Collide(uint64_t, const Collision&) override {
+    one_has_ended_ = true;
+    return AfterCollision::kEnd;
+  }
   bool Pause() override { return false; }
-  double lanes() const { return static_cast<double>(lanes_); }
+  double count() const { return static_cast<double>(count_); }
 
  private:
-  size_t lanes_ = 1;
+  PairGeometry geometry_;
+  uint64_t count_ = 0;
+  bool one_has_ended_ = false;
 };
 
 double LanesOf(Engine engine, const PairGeometry& geometry) {
-  NoOrbits none;
-  StartOrbits(engine, geometry, none)->Advance();
-  return none.lanes();
+  FirstOrbits orbits(geometry);
+  StartOrbits(engine, geometry, orbits)->Advance();
+  return orbits.count();
 }
 
 // Seconds per sample: the smallest of three measurements, because other programs only add time.

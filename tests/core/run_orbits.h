@@ -19,7 +19,7 @@ bool RunAll(Engine engine, const PairGeometry& geometry, Orbits& orbits) {
     Orbits& orbits_;
   };
   AllOrbits all(orbits);
-  return RunOrbits(engine, geometry, orbits.count(), all);
+  return all.Run(engine, geometry, orbits.count());
 }
 
 }  // namespace ballpiston

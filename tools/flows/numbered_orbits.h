@@ -1,26 +1,34 @@
-// Orbits of an engine that have numbers from 0, with one call for each start and for each
-// collision.
+// Orbits of an engine that have numbers from 0.
 #pragma once
 
 #include <cstdint>
-#include <limits>
-#include <stop_token>
+#include <optional>
 
 #include "core/billiard/orbits.h"
 
 namespace ballpiston {
 
-class NumberedOrbits {
+class NumberedOrbits : public OrbitSource {
  public:
-  virtual ~NumberedOrbits() = default;
   virtual PairState Start(uint64_t orbit) = 0;
-  virtual AfterCollision Collide(uint64_t orbit, const Collision& collision) = 0;
-  virtual OrbitDevice* Device() const { return nullptr; }
-  virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
-};
 
-// Runs orbits 0 ... count - 1 to their ends. Returns false if `stop` was requested before.
-bool RunOrbits(Engine engine, const PairGeometry& geometry, uint64_t count, NumberedOrbits& orbits,
-               const std::stop_token& stop = {});
+  // Runs orbits 0 ... count - 1 to their ends. Returns false if Pause was true before.
+  bool Run(Engine engine, const PairGeometry& geometry, uint64_t count) {
+    next_ = 0;
+    count_ = count;
+    return StartOrbits(engine, geometry, *this)->Advance();
+  }
+
+  std::optional<OrbitStart> Next() override {
+    if (next_ == count_) return std::nullopt;
+    const uint64_t orbit = next_++;
+    return OrbitStart{orbit, Start(orbit)};
+  }
+  bool Pause() override { return false; }
+
+ private:
+  uint64_t next_ = 0;
+  uint64_t count_ = 0;
+};
 
 }  // namespace ballpiston

@@ -72,7 +72,7 @@ void RunEach(const PairGeometry& geometry, uint64_t orbits, NumberedOrbits& sour
 template <Engine engine>
 void RunByEngine(const PairGeometry& geometry, uint64_t orbits, NumberedOrbits& source,
                  double /*time_step*/) {
-  RunOrbits(engine, geometry, orbits, source);
+  source.Run(engine, geometry, orbits);
 }
 
 // ---- from wall hit to wall hit ----

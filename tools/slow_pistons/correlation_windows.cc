@@ -159,7 +159,7 @@ std::array<WindowIntegrals, kWindows.size()> CorrelationWindows(const PairGeomet
   for (uint64_t first = 0; first < orbits; first += kOrbitsOfABlock) {
     const uint64_t count = std::min(kOrbitsOfABlock, orbits - first);
     WindowedOrbits block(geometry, seed, first, count);
-    RunOrbits(Engine::kLanes, geometry, count, block);
+    block.Run(Engine::kLanes, geometry, count);
     for (const OrbitIntegrals& orbit : block.integrals()) {
       for (size_t i = 0; i < kWindows.size(); ++i) {
         windows[i].all.Add(orbit.all[i]);

@@ -12,7 +12,6 @@
 #include "tools/flows/fixed_step_flow.h"
 #include "tools/flows/fixed_step_gas.h"
 #include "tools/flows/lane_balls.h"
-#include "tools/flows/numbered_orbits.h"
 #include "tools/flows/precise_flow.h"
 #include "tools/flows/rounded_to.h"
 #include "tools/stability/ball_watch.h"
@@ -70,7 +69,7 @@ template <Engine engine, typename Real>
 Failures RunByEngine(const PairGeometry& geometry, std::span<const PairState> starts,
                      uint64_t collisions) {
   CollisionWatch watch(geometry, std::numeric_limits<Real>::epsilon(), starts, collisions);
-  RunOrbits(engine, geometry, starts.size(), watch);
+  watch.Run(engine, geometry, starts.size());
   return watch.Finish();
 }
 

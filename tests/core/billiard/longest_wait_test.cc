@@ -47,7 +47,7 @@ class Returns : public NumberedOrbits {
 
 void ExpectShort(const PairGeometry& geometry, double epsilon) {
   Returns returns(geometry, epsilon);
-  ASSERT_TRUE(RunOrbits(Engine::kLanes, geometry, 500, returns));
+  ASSERT_TRUE(returns.Run(Engine::kLanes, geometry, 500));
   EXPECT_EQ(returns.lost(), 0);
   EXPECT_LT(returns.share(), 0.05) << geometry.rho() << " " << epsilon;
 }

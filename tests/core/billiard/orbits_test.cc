@@ -3,7 +3,6 @@
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/recorded_collisions.h"
 #include "tests/core/preamble.h"
-#include "tests/core/stopped.h"
 #include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
@@ -84,11 +83,15 @@ TEST(Orbits, LanesMeetThePistonWhereTheReferenceDoes) {
   EXPECT_GT(later, 100);
 }
 
-TEST(Orbits, StopEndsOrbits) {
+TEST(Orbits, PauseEndsARun) {
+  class Pauses : public RecordedCollisions {
+   public:
+    using RecordedCollisions::RecordedCollisions;
+    bool Pause() override { return true; }
+  };
   const PairGeometry geometry = PaperGeometry(1e-7);
   for (const Engine engine : kEngines) {
-    RecordedCollisions recorded(geometry, 10, 1);
-    EXPECT_FALSE(RunOrbits(engine, geometry, 10, recorded, Stopped()));
+    EXPECT_FALSE(Pauses(geometry, 10, 1).Run(engine, geometry, 10));
   }
 }
 
@@ -99,14 +102,15 @@ TEST(Orbits, EscapesInLanesAreReported) {
    public:
     using RecordedCollisions::RecordedCollisions;
     AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
-      if (collision.escaped) stop.request_stop();
+      has_escaped |= collision.escaped;
       return RecordedCollisions::Collide(orbit, collision);
     }
-    std::stop_source stop;
+    bool Pause() override { return has_escaped; }
+    bool has_escaped = false;
   };
   UntilAnEscape single(geometry, 100'000, 20);
-  EXPECT_FALSE(RunOrbits(Engine::kLanesSingle, geometry, 100'000, single, single.stop.get_token()));
-  EXPECT_TRUE(single.stop.stop_requested());
+  EXPECT_FALSE(single.Run(Engine::kLanesSingle, geometry, 100'000));
+  EXPECT_TRUE(single.has_escaped);
 }
 
 class CollisionsWithin : public RecordedCollisions {
@@ -134,7 +138,7 @@ TEST(Orbits, TimeLimitChangesNothingWithinIt) {
     const RecordedCollisions free = Recorded(engine, geometry, kOrbits, kCollisions);
     ForEachFusedTarget([&] {
       CollisionsWithin limited(kLimit, geometry, kOrbits, kCollisions);
-      ASSERT_TRUE(RunOrbits(engine, geometry, kOrbits, limited));
+      ASSERT_TRUE(limited.Run(engine, geometry, kOrbits));
       uint64_t expired = 0;
       for (uint64_t orbit = 0; orbit < kOrbits; ++orbit) {
         const auto &all = free.by_orbit()[orbit], &some = limited.by_orbit()[orbit];
@@ -157,28 +161,22 @@ TEST(Orbits, TimeLimitChangesNothingWithinIt) {
 }
 
 // Given pairs, each once. Gives up after so many looks that a run that can end has ended.
-class GivesUp : public OrbitSource {
+class GivesUp : public NumberedOrbits {
  public:
   explicit GivesUp(std::vector<PairState> pairs) : pairs_(std::move(pairs)) {}
-  size_t Start(std::span<OrbitStart> starts) override {
-    size_t n = 0;
-    for (; n < starts.size() && next_ < pairs_.size(); ++n, ++next_) {
-      starts[n] = {next_, pairs_[next_]};
-    }
-    return n;
-  }
-  void Collide(std::span<OrbitCollision> collisions) override {
-    ends_.insert(ends_.end(), collisions.begin(), collisions.end());
+  PairState Start(uint64_t orbit) override { return pairs_[orbit]; }
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    EXPECT_TRUE(ends_.emplace(orbit, collision).second);
+    return AfterCollision::kEnd;
   }
   bool Pause() override { return ++looks_ > kMostLooks; }
-  const std::vector<OrbitCollision>& ends() const { return ends_; }
+  const std::map<uint64_t, Collision>& ends() const { return ends_; }
 
  private:
   static constexpr int kMostLooks = 500;
   std::vector<PairState> pairs_;
-  size_t next_ = 0;
   int looks_ = 0;
-  std::vector<OrbitCollision> ends_;
+  std::map<uint64_t, Collision> ends_;  // by orbit
 };
 
 // A ball at rest, and when the piston meets it.
@@ -230,17 +228,17 @@ TEST(Orbits, ThePistonMeetsABallAtRestAtItsPlace) {
     for (const AtRest& ball : balls) pairs.push_back(ball.pair);
     for (const Engine engine : kEngines) {
       GivesUp source(pairs);
-      ASSERT_TRUE(StartOrbits(engine, geometry, source)->Advance());
+      ASSERT_TRUE(source.Run(engine, geometry, pairs.size()));
       ASSERT_EQ(source.ends().size(), pairs.size());
-      for (const OrbitCollision& end : source.ends()) {
-        const AtRest& ball = balls[end.orbit];
-        ASSERT_FALSE(end.collision.escaped);
-        EXPECT_NEAR(end.collision.time, ball.time,
+      for (const auto& [orbit, collision] : source.ends()) {
+        const AtRest& ball = balls[orbit];
+        ASSERT_FALSE(collision.escaped);
+        EXPECT_NEAR(collision.time, ball.time,
                     engine == Engine::kLanesSingle ? ball.error_in_single : 1e-14);
-        EXPECT_EQ(end.collision.ball_wall_hits, 0u);
-        EXPECT_EQ(end.collision.piston_wall_hits, ball.piston_wall_hits);
-        EXPECT_EQ(end.collision.state.ball_speed, 0);
-        EXPECT_EQ(end.collision.state.piston_velocity, -1);
+        EXPECT_EQ(collision.ball_wall_hits, 0u);
+        EXPECT_EQ(collision.piston_wall_hits, ball.piston_wall_hits);
+        EXPECT_EQ(collision.state.ball_speed, 0);
+        EXPECT_EQ(collision.state.piston_velocity, -1);
       }
     }
   }
@@ -261,11 +259,11 @@ TEST(Orbits, OrbitsThatCannotEndAreLost) {
       {.position = {-0.9, 0}, .direction = {-1, 0}, .ball_speed = 1, .piston = 0.5}};
   for (const Engine engine : kEngines) {
     GivesUp source(pairs);
-    ASSERT_TRUE(StartOrbits(engine, geometry, source)->Advance());
+    ASSERT_TRUE(source.Run(engine, geometry, pairs.size()));
     ASSERT_EQ(source.ends().size(), pairs.size());
-    for (const OrbitCollision& end : source.ends()) {
-      EXPECT_TRUE(end.collision.escaped);
-      EXPECT_FALSE(end.collision.expired);
+    for (const auto& [orbit, collision] : source.ends()) {
+      EXPECT_TRUE(collision.escaped);
+      EXPECT_FALSE(collision.expired);
     }
   }
 }
@@ -274,11 +272,8 @@ TEST(Orbits, OrbitsThatCannotEndAreLost) {
 class CountedStarts : public OrbitSource {
  public:
   explicit CountedStarts(const PairState& pair) : pair_(pair) {}
-  size_t Start(std::span<OrbitStart> starts) override {
-    for (OrbitStart& start : starts) start = {started_++, pair_};
-    return starts.size();
-  }
-  void Collide(std::span<OrbitCollision>) override {}
+  std::optional<OrbitStart> Next() override { return OrbitStart{started_++, pair_}; }
+  AfterCollision Collide(uint64_t, const Collision&) override { return AfterCollision::kEnd; }
   bool Pause() override {
     most_ = std::max(most_, started_ - std::exchange(at_look_, started_));
     return started_ > 100'000;

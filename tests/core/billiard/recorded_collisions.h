@@ -40,7 +40,7 @@ class RecordedCollisions : public NumberedOrbits {
 inline RecordedCollisions Recorded(Engine engine, const PairGeometry& geometry, uint64_t orbits,
                                    size_t collisions) {
   RecordedCollisions recorded(geometry, orbits, collisions);
-  EXPECT_TRUE(RunOrbits(engine, geometry, orbits, recorded));
+  EXPECT_TRUE(recorded.Run(engine, geometry, orbits));
   return recorded;
 }
 

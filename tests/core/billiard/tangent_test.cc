@@ -7,6 +7,7 @@
 #include "core/gas/pair_tangents.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/core/preamble.h"
+#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
@@ -24,49 +25,39 @@ struct Followed {
 };
 
 template <typename Tangents>
-class RecordedGrowths : public OrbitSource {
+class RecordedGrowths : public NumberedOrbits {
  public:
   RecordedGrowths(Engine engine, const PairGeometry& geometry, size_t orbits)
       : geometry_(geometry), orbits_(orbits), tangents_(orbits) {
-    StartOrbits(engine, geometry, *this)->Advance();
+    Run(engine, geometry, orbits);
   }
   const std::vector<Followed>& orbits() const { return orbits_; }
 
  private:
-  size_t Start(std::span<OrbitStart> starts) override {
-    size_t n = 0;
-    for (; n < starts.size() && started_ < orbits_.size(); ++n, ++started_) {
-      CounterRandom random(1, 2, started_);
-      starts[n] = {started_, DrawFromCollisionMeasure(geometry_, random)};
-      tangents_[started_].emplace(geometry_, starts[n].state);
-    }
-    return n;
+  PairState Start(uint64_t orbit) override {
+    CounterRandom random(1, 2, orbit);
+    const PairState state = DrawFromCollisionMeasure(geometry_, random);
+    tangents_[orbit].emplace(geometry_, state);
+    return state;
   }
 
-  void Collide(std::span<OrbitCollision> collisions) override {
-    for (auto& [index, collision, after] : collisions) {
-      tangents_[index]->Collide(collision);
-      const auto growth = tangents_[index]->TakeGrowth();
-      Followed& orbit = orbits_[index];
-      orbit.growths[orbit.collisions++] = {growth[0], growth[1]};
-      orbit.hits += collision.ball_wall_hits;
-      after = orbit.collisions < kCollisions ? AfterCollision::kGoOn : AfterCollision::kEnd;
-    }
+  AfterCollision Collide(uint64_t index, const Collision& collision) override {
+    tangents_[index]->Collide(collision);
+    const auto growth = tangents_[index]->TakeGrowth();
+    Followed& orbit = orbits_[index];
+    orbit.growths[orbit.collisions++] = {growth[0], growth[1]};
+    orbit.hits += collision.ball_wall_hits;
+    return orbit.collisions < kCollisions ? AfterCollision::kGoOn : AfterCollision::kEnd;
   }
 
   bool FollowsTangents() const override { return true; }
   void FollowEvent(uint64_t orbit, const Event& event, const PairState& after) override {
     if constexpr (std::is_same_v<Tangents, PairTangents>) tangents_[orbit]->Follow(event, after);
   }
-  void FollowWait(uint64_t orbit, const BallMap& flights) override {
-    if constexpr (std::is_same_v<Tangents, TangentPlane>) tangents_[orbit]->Follow(flights);
-  }
-  bool Pause() override { return false; }
 
   PairGeometry geometry_;
   std::vector<Followed> orbits_;
   std::vector<std::optional<Tangents>> tangents_;
-  size_t started_ = 0;
 };
 
 // Orbits of both engines agree for about 30 wall hits. Some of them have four collisions until
@@ -96,12 +87,10 @@ std::array<double, 2> GrowthWithExponent(double exponent) {
       .state = {.direction = {0.6, 0.8}, .ball_speed = 0.8, .piston_velocity = -0.6},
       .time = 50,
       .ball_wall_hits = 7,
-      .piston_wall_hits = 2};
+      .piston_wall_hits = 2,
+      .flights = {.aa = 0.9, .at = 0.2, .ta = 1.7, .tt = 0.4, .exponent = exponent}};
   TangentPlane plane;
-  for (int wait = 0; wait < 2; ++wait) {
-    plane.Follow({.aa = 0.9, .at = 0.2, .ta = 1.7, .tt = 0.4, .exponent = exponent});
-    plane.Collide(collision);
-  }
+  for (int wait = 0; wait < 2; ++wait) plane.Collide(collision);
   return plane.TakeGrowth();
 }
 

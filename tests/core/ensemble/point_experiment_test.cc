@@ -9,7 +9,6 @@
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
-#include "tests/core/stopped.h"
 
 namespace ballpiston {
 namespace {

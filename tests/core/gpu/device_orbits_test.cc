@@ -44,11 +44,11 @@ void ExpectBitsOfTheLanes(const DeviceRun& run) {
       std::make_unique<HostDevice>(run.lanes, run.faults), 1,
       [&](const absl::Status& status) { failures.emplace_back(status.message()); });
   OrbitsOf found(run.geometry, run.orbits, kCollisions, &device);
-  EXPECT_TRUE(RunOrbits(Engine::kLanes, run.geometry, run.orbits, found));
+  EXPECT_TRUE(found.Run(Engine::kLanes, run.geometry, run.orbits));
   EXPECT_EQ(failures, run.failures);
   ForEachFusedTarget([&] {
     OrbitsOf lanes(run.geometry, run.orbits, kCollisions, nullptr);
-    EXPECT_TRUE(RunOrbits(Engine::kLanes, run.geometry, run.orbits, lanes));
+    EXPECT_TRUE(lanes.Run(Engine::kLanes, run.geometry, run.orbits));
     for (uint64_t orbit = 0; orbit < run.orbits; ++orbit) {
       ASSERT_EQ(found.by_orbit()[orbit].size(), lanes.by_orbit()[orbit].size());
       for (size_t i = 0; i < lanes.by_orbit()[orbit].size(); ++i) {
@@ -87,7 +87,7 @@ TEST(OrbitsOnDevice, AFailureIsReportedOnceAndNoLaterRunUsesTheDevice) {
                         [&](const absl::Status&) { ++failures; });
   for (int run = 0; run < 3; ++run) {
     OrbitsOf source(kPaperPair, 100, 2, &device);
-    EXPECT_TRUE(RunOrbits(Engine::kLanes, kPaperPair, 100, source));
+    EXPECT_TRUE(source.Run(Engine::kLanes, kPaperPair, 100));
     EXPECT_TRUE(device.has_failed());
   }
   EXPECT_EQ(failures, 1);
