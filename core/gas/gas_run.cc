@@ -13,22 +13,10 @@ namespace {
 
 constexpr int kEventsOfACall = 6000;  // of 300 ns
 
-void Record(ReferenceGas& gas, GasMeter& meter) {
-  const GasEvent event = gas.Step();
-  if (event.kind == EventKind::kBallPiston) {
-    meter.Exchange({event.time, event.ball, event.piston, event.direction,
-                    gas.BallEnergy(event.ball), gas.PistonEnergy(event.piston)});
-  } else if (event.kind == EventKind::kPistonWall) {
-    meter.SetPiston(event.time, event.piston, gas.PistonEnergy(event.piston));
-  } else if (event.kind == EventKind::kEscape) {
-    meter.CountEscape();
-  }
-}
-
 bool AdvanceToward(double time, ReferenceGas& gas, GasMeter& meter) {
   for (int i = 0; i < kEventsOfACall; ++i) {
     if (gas.NextTime() > time) return true;
-    Record(gas, meter);
+    meter.See(gas.Step());
   }
   return false;
 }

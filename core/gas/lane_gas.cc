@@ -338,7 +338,8 @@ void LaneGas::Exchange(Replica& replica, uint32_t number) {
   ball.from = ball.to =
       PlacedBall(gas_, SeenFrom(direction, after.position), SeenFrom(direction, after.direction));
   const int64_t local = piston_number - replica.first_piston;
-  replica.meter->Exchange({.time = replica.origin + replica.now,
+  replica.meter->Exchange({.kind = EventKind::kBallPiston,
+                           .time = replica.origin + replica.now,
                            .ball = number - replica.first_ball,
                            .piston = local,
                            .direction = direction,
