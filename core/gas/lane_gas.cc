@@ -48,7 +48,8 @@ double PeriodOf(double mean_flight) {
 }  // namespace
 
 LaneGas::LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<GasStart> replicas)
-    : gas_(geometry),
+    : GasRun(geometry, replicas),
+      gas_(geometry),
       lanes_(LanesOf(gas_)),
       balls_each_(static_cast<uint32_t>(geometry.balls())),
       pistons_each_(static_cast<uint32_t>(geometry.pistons())),
@@ -66,7 +67,7 @@ void LaneGas::Add(GasStart start) {
   const auto number = static_cast<uint32_t>(replicas_.size());
   EventQueue queue(balls_each_ + start.walls.Count());
   replicas_.push_back({.walls = std::move(start.walls),
-                       .meter = start.meter,
+                       .meter = &meters()[number],
                        .queue = std::move(queue),
                        .first_ball = number * balls_each_,
                        .first_piston = number * pistons_each_,

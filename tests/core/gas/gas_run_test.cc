@@ -1,8 +1,8 @@
 #include "core/gas/gas_run.h"
 
+#include "core/gas/gas_exchange_rate.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
-#include "tools/flows/metered_gases.h"
 
 namespace ballpiston {
 namespace {
@@ -17,7 +17,7 @@ std::vector<GasStart> StartsOf(const GasGeometry& geometry, uint64_t first, uint
     const GasRandom random(91, 0, replica);
     CounterRandom of_start = random.OfStart();
     GasState state = DrawGas(geometry, TemperatureProfile(1), of_start);
-    starts.push_back({std::move(state), ThermalWalls(geometry, 2, 1, random), random, nullptr});
+    starts.push_back({std::move(state), ThermalWalls(geometry, 2, 1, random), random});
   }
   return starts;
 }
@@ -25,20 +25,21 @@ std::vector<GasStart> StartsOf(const GasGeometry& geometry, uint64_t first, uint
 class Replicas {
  public:
   Replicas(GasEngine engine, const GasGeometry& geometry, uint64_t first, uint64_t count)
-      : gases_(engine, geometry, StartsOf(geometry, first, count)) {}
+      : run_(StartGases(engine, geometry, GasExchangeRate(geometry, 1),
+                        StartsOf(geometry, first, count))) {}
 
   // The window of measurement in so many calls.
   std::vector<uint64_t> BitsAfter(int calls, double end = kEnd) {
-    gases_.AdvanceTo(kWarmUp);
-    for (GasMeter& meter : gases_.meters()) meter.Begin(kWarmUp);
-    for (int i = 1; i <= calls; ++i) gases_.AdvanceTo(kWarmUp + (end - kWarmUp) * i / calls);
+    run_->AdvanceTo(kWarmUp);
+    for (GasMeter& meter : run_->meters()) meter.Begin(kWarmUp);
+    for (int i = 1; i <= calls; ++i) run_->AdvanceTo(kWarmUp + (end - kWarmUp) * i / calls);
     return Bits(end);
   }
 
  private:
   std::vector<uint64_t> Bits(double end) {
     std::vector<uint64_t> bits;
-    for (GasMeter& meter : gases_.meters()) {
+    for (GasMeter& meter : run_->meters()) {
       meter.End(end);
       EXPECT_EQ(meter.escapes(), 0u);
       bits.push_back(meter.exchanges());
@@ -51,7 +52,7 @@ class Replicas {
     return bits;
   }
 
-  MeteredGases gases_;
+  std::unique_ptr<GasRun> run_;
 };
 
 class GasRunOfEngine : public testing::TestWithParam<GasEngine> {};
