@@ -296,8 +296,8 @@ struct ReplicasOfBlock {
 // A replica that runs.
 struct Replica {
   uint64_t number;  // of OpenBlocks
-  std::unique_ptr<GasMeter> meter;
   double energy_at_start;
+  std::unique_ptr<CurrentMeter> current;  // until the run has it
 };
 
 // Computes several replicas at a time, of several blocks if these are small, to fill the lanes.
@@ -313,8 +313,8 @@ class GasBlocks : public EngineRun {
       if (run_ == nullptr) Begin();
       if (run_ == nullptr) return true;
       if (!run_->AdvanceToward(experiment_.duration())) continue;
+      for (size_t i = 0; i < running_.size(); ++i) Measure(running_[i], run_->meters()[i]);
       run_.reset();
-      for (const Replica& replica : running_) Measure(replica);
       running_.clear();
     } while (!queue_.Pause());
     return false;
@@ -340,6 +340,9 @@ class GasBlocks : public EngineRun {
     if (starts.empty()) return;
     run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
                       std::move(starts));
+    for (size_t i = 0; i < running_.size(); ++i) {
+      run_->meters()[i].MeasureCurrent(std::move(running_[i].current));
+    }
   }
 
   GasStart Draw(uint64_t number) {
@@ -347,26 +350,19 @@ class GasBlocks : public EngineRun {
         experiment_.RandomOf(blocks_.BlockOf(number).first + blocks_.IndexOf(number));
     CounterRandom of_start = random.OfStart();
     GasState state = DrawGas(experiment_.geometry(), TemperatureProfile(1), of_start);
-    auto meter = std::make_unique<GasMeter>(experiment_.geometry(), state);
-    meter->MeasureCurrent(experiment_.CurrentOf(state));
-    const double energy = meter->TotalEnergy();
-    running_.push_back({number, std::move(meter), energy});
-    return {std::move(state), ThermalWalls(), random, running_.back().meter.get()};
+    running_.push_back({number, EnergyOf(state), experiment_.CurrentOf(state)});
+    return {std::move(state), ThermalWalls(), random};
   }
 
-  void Measure(const Replica& replica) {
-    replica.meter->End(experiment_.duration());
+  void Measure(const Replica& replica, GasMeter& meter) {
+    meter.End(experiment_.duration());
     BlockResult& result = blocks_.WorkOf(replica.number).result;
-    experiment_.Measure(*replica.meter, result);
-    result.health.Merge(HealthOf(replica));
+    experiment_.Measure(meter, result);
+    result.health.Merge(
+        {.escapes = meter.escapes(),
+         .max_energy_error = std::fabs(meter.TotalEnergy() / replica.energy_at_start - 1)});
     ++result.samples;
     blocks_.End(replica.number);
-  }
-
-  static Health HealthOf(const Replica& replica) {
-    return {
-        .escapes = replica.meter->escapes(),
-        .max_energy_error = std::fabs(replica.meter->TotalEnergy() / replica.energy_at_start - 1)};
   }
 
   const GasEquilibrium& experiment_;

@@ -59,7 +59,7 @@ class GroupRun : public EngineRun {
     group_ = is_first ? shape.NewGroup() : shape.Read(block_->start);
     if (is_first) DrawStarts();
     stretches_ = 0;
-    is_measuring_ = group_.measured > 0;
+    is_measuring_ = group_.measured > 0 || (group_.stretches >= WarmUp() && WarmUpEnds());
     Start();
   }
 
@@ -73,45 +73,43 @@ class GroupRun : public EngineRun {
     }
   }
 
-  // The warm-up is judged before the jump process sets its outermost pistons' energies: the new
-  // energies may differ from the energies of the state by rounding.
   void Start() {
     std::vector<GasStart> starts;
-    meters_.clear();
-    meters_.reserve(trajectories().size());
     for (size_t i = 0; i < trajectories().size(); ++i) {
-      meters_.emplace_back(experiment_.geometry(), trajectories()[i].state);
       const GasRandom random = RandomOf(i);
-      starts.push_back({std::move(trajectories()[i].state), experiment_.WallsOf(random), random,
-                        &meters_.back()});
+      starts.push_back({std::move(trajectories()[i].state), experiment_.WallsOf(random), random});
     }
-    carried_.assign(meters_.size(), 0);
-    BeginStretch();
+    carried_.assign(starts.size(), 0);
     run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
                       std::move(starts));
   }
 
-  // Judges the warm-up when it may end, and begins the measurement of the chunk.
+  // A later stretch of the chunk. The warm-up may end within the chunk.
   void BeginStretch() {
-    const auto warm_up = static_cast<double>(experiment_.trajectories().warm_up);
-    const bool is_new = stretches_ == 0, was_measuring = is_measuring_;
-    const bool is_judged =
-        !is_measuring_ && (group_.stretches == warm_up || (is_new && group_.stretches > warm_up));
-    if (is_judged) is_measuring_ = HasWarmedUp() || group_.stretches >= kLongestWarmUp * warm_up;
-    if (!is_measuring_ || (was_measuring && !is_new)) return;
-    for (GasMeter& meter : meters_) meter.Begin(Now());
+    if (is_measuring_ || group_.stretches != WarmUp()) return;
+    is_measuring_ = WarmUpEnds();
+    if (!is_measuring_) return;
+    for (GasMeter& meter : run_->meters()) meter.Begin(Now());
   }
 
-  // And keeps the energies, from which the next judgement counts.
-  bool HasWarmedUp() {
+  double WarmUp() const { return static_cast<double>(experiment_.trajectories().warm_up); }
+
+  // Judges a warm-up that is long enough to end now. Keeps the energies, from which the next
+  // judgement counts. At a chunk's beginning they are those of the states: in its run the jump
+  // process sets the energies of its outermost pistons, which may then differ by rounding.
+  bool WarmUpEnds() {
     double change = 0;
-    for (size_t i = 0; i < meters_.size(); ++i) {
-      const double energy = meters_[i].TotalEnergy();
-      change += energy - std::exchange(trajectories()[i].energy, energy);
+    for (size_t i = 0; i < trajectories().size(); ++i) {
+      SteadyTrajectory& trajectory = trajectories()[i];
+      const double energy =
+          run_ == nullptr ? EnergyOf(trajectory.state) : run_->meters()[i].TotalEnergy();
+      change += energy - std::exchange(trajectory.energy, energy);
     }
-    const auto count = static_cast<double>(meters_.size());
+    const auto count = static_cast<double>(trajectories().size());
     constexpr double kDeviations = 3;
-    return std::fabs(change) <= kDeviations * std::sqrt(2 * experiment_.VarianceOfEnergy() * count);
+    return std::fabs(change) <=
+               kDeviations * std::sqrt(2 * experiment_.VarianceOfEnergy() * count) ||
+           group_.stretches >= kLongestWarmUp * WarmUp();
   }
 
   void EndStretch() {
@@ -121,8 +119,8 @@ class GroupRun : public EngineRun {
     // A ball has one contact on its left and one on its right.
     const auto sections = 2 * static_cast<double>(experiment_.geometry().shape().columns);
     std::vector<double> charges;
-    for (size_t i = 0; i < meters_.size(); ++i) {
-      const double carried = meters_[i].carried();
+    for (size_t i = 0; i < carried_.size(); ++i) {
+      const double carried = run_->meters()[i].carried();
       charges.push_back((carried - std::exchange(carried_[i], carried)) / sections);
     }
     group_.AddStretch(charges);
@@ -131,13 +129,14 @@ class GroupRun : public EngineRun {
   BlockResult Result() {
     BlockResult result = experiment_.EmptyResult();
     result.samples = block_->samples;
-    for (size_t i = 0; i < meters_.size(); ++i) {
+    for (size_t i = 0; i < trajectories().size(); ++i) {
       SteadyTrajectory& trajectory = trajectories()[i];
+      GasMeter& meter = run_->meters()[i];
       trajectory.state = run_->StateOf(i);
-      result.health.escapes += meters_[i].escapes();
+      result.health.escapes += meter.escapes();
       if (!is_measuring_) continue;
-      meters_[i].End(Now());
-      const std::vector<double> integrals = experiment_.IntegralsOf(meters_[i]);
+      meter.End(Now());
+      const std::vector<double> integrals = experiment_.IntegralsOf(meter);
       for (size_t j = 0; j < integrals.size(); ++j) trajectory.sums[j] += integrals[j];
     }
     run_.reset();
@@ -150,9 +149,8 @@ class GroupRun : public EngineRun {
   BlockQueue& queue_;
   std::optional<Block> block_;
   SteadyGroup group_;
-  std::vector<GasMeter> meters_;
-  std::unique_ptr<GasRun> run_;
-  double stretches_ = 0;  // of this chunk
+  std::unique_ptr<GasRun> run_;  // of the chunk; null before it has started
+  double stretches_ = 0;         // of this chunk
   bool is_measuring_ = false;
   std::vector<double> carried_;  // by each trajectory, at the last end of a stretch
 };

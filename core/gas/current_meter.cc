@@ -21,7 +21,7 @@ void CurrentSteps::AddOver(double begin, double end, double current) {
   steps_[last] += current * (end - begin);
 }
 
-void CarriedCurrent::Exchange(const GasExchange& exchange, double carried) {
+void CarriedCurrent::Exchange(const GasEvent& exchange, double carried) {
   const double moment = carried / 2;
   steps_.AddAt(exchange.time, moment);
   squares_ += moment * moment;

@@ -19,7 +19,7 @@
 
 namespace ballpiston {
 
-struct GasExchange;
+struct GasEvent;
 
 // The integral of a current over each of several equal steps of time from 0.
 class CurrentSteps {
@@ -57,7 +57,7 @@ class CurrentMeter {
  public:
   virtual ~CurrentMeter() = default;
   // `carried` is the energy that the exchange moved toward +x, from a ball to a piston or back.
-  virtual void Exchange(const GasExchange& exchange, double carried) = 0;
+  virtual void Exchange(const GasEvent& exchange, double carried) = 0;
   virtual void End(double time) = 0;
   virtual GreenKubo Result() const = 0;
 };
@@ -73,7 +73,7 @@ class CarriedCurrent : public CurrentMeter {
         exchange_rate_(exchange_rate),
         steps_(duration, kCurrentSteps) {}
 
-  void Exchange(const GasExchange& exchange, double carried) override;
+  void Exchange(const GasEvent& exchange, double carried) override;
   void End(double) override {}
   GreenKubo Result() const override;
 

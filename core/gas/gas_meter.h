@@ -11,20 +11,21 @@
 #include <utility>
 #include <vector>
 
+#include "core/billiard/event_flow.h"
 #include "core/gas/current_meter.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_state.h"
 
 namespace ballpiston {
 
-// An exchange of a ball with the piston that it sees in `direction`, and the energies after it.
-struct GasExchange {
+struct GasEvent {
+  EventKind kind = EventKind::kEscape;
   double time = 0;
-  int64_t ball = 0;
-  int64_t piston = 0;
-  Direction direction = Direction::kRight;
-  double ball_energy = 0;
-  double piston_energy = 0;
+  int64_t ball = -1;                        // of a wall hit, an exchange or an escape
+  int64_t piston = -1;                      // of a wall hit or an exchange
+  Direction direction = Direction::kRight;  // in which the ball sees the piston
+  double ball_energy = 0;                   // after an exchange
+  double piston_energy = 0;                 // after an exchange or the piston's wall hit
 };
 
 class GasMeter {
@@ -48,7 +49,15 @@ class GasMeter {
     for (Body& body : bodies_) body = {.energy = body.energy, .since = time};
   }
 
-  void Exchange(const GasExchange& exchange) {
+  void See(const GasEvent& event) {
+    if (event.kind == EventKind::kBallPiston) Exchange(event);
+    if (event.kind == EventKind::kPistonWall) {
+      SetPiston(event.time, event.piston, event.piston_energy);
+    }
+    if (event.kind == EventKind::kEscape) CountEscape();
+  }
+
+  void Exchange(const GasEvent& exchange) {
     ++exchanges_;
     Body& ball = bodies_[static_cast<size_t>(exchange.ball)];
     const double carried = IsAlongX(exchange.direction)

@@ -13,22 +13,10 @@ namespace {
 
 constexpr int kEventsOfACall = 6000;  // of 300 ns
 
-void Record(ReferenceGas& gas, GasMeter& meter) {
-  const GasEvent event = gas.Step();
-  if (event.kind == EventKind::kBallPiston) {
-    meter.Exchange({event.time, event.ball, event.piston, event.direction,
-                    gas.BallEnergy(event.ball), gas.PistonEnergy(event.piston)});
-  } else if (event.kind == EventKind::kPistonWall) {
-    meter.SetPiston(event.time, event.piston, gas.PistonEnergy(event.piston));
-  } else if (event.kind == EventKind::kEscape) {
-    meter.CountEscape();
-  }
-}
-
 bool AdvanceToward(double time, ReferenceGas& gas, GasMeter& meter) {
   for (int i = 0; i < kEventsOfACall; ++i) {
     if (gas.NextTime() > time) return true;
-    Record(gas, meter);
+    meter.See(gas.Step());
   }
   return false;
 }
@@ -45,11 +33,12 @@ bool AdvanceToward(double time, JumpGas& gas, GasMeter& meter) {
 template <typename Gas>
 class SeparateGases : public GasRun {
  public:
-  // `make` makes a gas from its start.
+  // `make` makes a gas from its start, and prepares its meter.
   template <typename Make>
-  SeparateGases(std::vector<GasStart> replicas, const Make& make) {
+  SeparateGases(const GasGeometry& geometry, std::vector<GasStart> replicas, const Make& make)
+      : GasRun(geometry, replicas) {
     gases_.reserve(replicas.size());
-    for (GasStart& start : replicas) gases_.push_back({make(start), *start.meter});
+    for (size_t i = 0; i < replicas.size(); ++i) gases_.push_back(make(replicas[i], meters()[i]));
   }
 
   bool AdvanceToward(double time) override {
@@ -57,33 +46,27 @@ class SeparateGases : public GasRun {
       time_ = time;
       arrived_ = 0;
     }
-    if (arrived_ < gases_.size()) {
-      auto& [gas, meter] = gases_[arrived_];
-      if (ballpiston::AdvanceToward(time, gas, meter)) ++arrived_;
+    if (arrived_ < gases_.size() &&
+        ballpiston::AdvanceToward(time, gases_[arrived_], meters()[arrived_])) {
+      ++arrived_;
     }
     return arrived_ == gases_.size();
   }
 
   GasState StateOf(size_t replica) const override {
-    return ballpiston::StateOf(gases_[replica].gas, time_);
+    return ballpiston::StateOf(gases_[replica], time_);
   }
 
  private:
-  struct Metered {
-    Gas gas;
-    GasMeter& meter;
-  };
-
-  std::vector<Metered> gases_;
+  std::vector<Gas> gases_;
   double time_ = 0;
   size_t arrived_ = 0;  // gases that are at time_
 };
 
 // In the jump process the outermost pistons have their mean energy from the start.
-void SetOutermost(const GasGeometry& geometry, const GasStart& start) {
+void SetOutermost(const GasGeometry& geometry, const ThermalWalls& walls, GasMeter& meter) {
   for (int64_t piston = 0; piston < geometry.pistons(); ++piston) {
-    if (!start.walls.Has(piston)) continue;
-    start.meter->SetPiston(0, piston, start.walls.TemperatureAt(piston) / 2);
+    if (walls.Has(piston)) meter.SetPiston(0, piston, walls.TemperatureAt(piston) / 2);
   }
 }
 
@@ -93,19 +76,21 @@ std::unique_ptr<GasRun> StartGases(GasEngine engine, const GasGeometry& geometry
                                    double exchange_rate, std::vector<GasStart> replicas) {
   switch (engine) {
     case GasEngine::kJumps:
-      return std::make_unique<SeparateGases<JumpGas>>(std::move(replicas), [&](GasStart& start) {
-        SetOutermost(geometry, start);
-        return JumpGas(geometry, std::sqrt(std::numbers::pi) * exchange_rate, start.state,
-                       std::move(start.walls), start.random.OfJumps());
-      });
+      return std::make_unique<SeparateGases<JumpGas>>(
+          geometry, std::move(replicas), [&](GasStart& start, GasMeter& meter) {
+            SetOutermost(geometry, start.walls, meter);
+            return JumpGas(geometry, std::sqrt(std::numbers::pi) * exchange_rate, start.state,
+                           std::move(start.walls), start.random.OfJumps());
+          });
     case GasEngine::kLanes:
       return std::make_unique<LaneGas>(geometry, exchange_rate, std::move(replicas));
     case GasEngine::kReference:
       break;
   }
-  return std::make_unique<SeparateGases<ReferenceGas>>(std::move(replicas), [&](GasStart& start) {
-    return ReferenceGas(geometry, start.state, std::move(start.walls));
-  });
+  return std::make_unique<SeparateGases<ReferenceGas>>(
+      geometry, std::move(replicas), [&](GasStart& start, GasMeter&) {
+        return ReferenceGas(geometry, start.state, std::move(start.walls));
+      });
 }
 
 }  // namespace ballpiston

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/gas/gas_geometry.h"
@@ -22,12 +23,11 @@ namespace ballpiston {
 
 enum class GasEngine { kReference, kLanes, kJumps };
 
-// A gas at time 0. The meter must outlive the run, and have the same energies.
+// A gas at time 0.
 struct GasStart {
   GasState state;
   ThermalWalls walls;
   GasRandom random;
-  GasMeter* meter;
 };
 
 class GasRun {
@@ -43,6 +43,18 @@ class GasRun {
   // The positions and velocities of a replica at the time to which AdvanceTo has moved it, from
   // which another run can continue. The jump process has speeds alone.
   virtual GasState StateOf(size_t replica) const = 0;
+
+  // The meter of each replica. The measurements begin at time 0.
+  std::span<GasMeter> meters() { return meters_; }
+
+ protected:
+  GasRun(const GasGeometry& geometry, const std::vector<GasStart>& replicas) {
+    meters_.reserve(replicas.size());
+    for (const GasStart& start : replicas) meters_.emplace_back(geometry, start.state);
+  }
+
+ private:
+  std::vector<GasMeter> meters_;
 };
 
 // `exchange_rate` is that of the gas at temperature 1 (gas_exchange_rate.h). It determines the

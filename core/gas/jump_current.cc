@@ -83,7 +83,7 @@ void JumpCurrent::FindPistonTerm(size_t piston) {
   SetTerm((neighbours * pistons_[piston].change).sum(), pistons_[piston]);
 }
 
-void JumpCurrent::Exchange(const GasExchange& exchange, double) {
+void JumpCurrent::Exchange(const GasEvent& exchange, double) {
   AddUntil(exchange.time);
   const auto ball = static_cast<size_t>(exchange.ball);
   const auto piston = static_cast<size_t>(exchange.piston);

@@ -41,7 +41,7 @@ class JumpCurrent : public CurrentMeter {
   JumpCurrent(const GasGeometry& geometry, double exchange_rate, const GasState& start,
               double duration);
 
-  void Exchange(const GasExchange& exchange, double carried) override;
+  void Exchange(const GasEvent& exchange, double carried) override;
   void End(double time) override { AddUntil(time); }
   GreenKubo Result() const override;
 

@@ -125,7 +125,8 @@ void JumpGas::Exchange(GasMeter& meter) {
   } else {
     SetSpeed(balls_ + static_cast<size_t>(piston), std::fabs(v1));
   }
-  meter.Exchange({time_, ball, piston, direction, ball_energy, piston_energy});
+  meter.Exchange(
+      {EventKind::kBallPiston, time_, ball, piston, direction, ball_energy, piston_energy});
 }
 
 // The lowest bits of the word that chose the body choose the contact; they are still unused. What

@@ -48,7 +48,8 @@ double PeriodOf(double mean_flight) {
 }  // namespace
 
 LaneGas::LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<GasStart> replicas)
-    : gas_(geometry),
+    : GasRun(geometry, replicas),
+      gas_(geometry),
       lanes_(LanesOf(gas_)),
       balls_each_(static_cast<uint32_t>(geometry.balls())),
       pistons_each_(static_cast<uint32_t>(geometry.pistons())),
@@ -66,7 +67,7 @@ void LaneGas::Add(GasStart start) {
   const auto number = static_cast<uint32_t>(replicas_.size());
   EventQueue queue(balls_each_ + start.walls.Count());
   replicas_.push_back({.walls = std::move(start.walls),
-                       .meter = start.meter,
+                       .meter = &meters()[number],
                        .queue = std::move(queue),
                        .first_ball = number * balls_each_,
                        .first_piston = number * pistons_each_,
@@ -338,7 +339,8 @@ void LaneGas::Exchange(Replica& replica, uint32_t number) {
   ball.from = ball.to =
       PlacedBall(gas_, SeenFrom(direction, after.position), SeenFrom(direction, after.direction));
   const int64_t local = piston_number - replica.first_piston;
-  replica.meter->Exchange({.time = replica.origin + replica.now,
+  replica.meter->Exchange({.kind = EventKind::kBallPiston,
+                           .time = replica.origin + replica.now,
                            .ball = number - replica.first_ball,
                            .piston = local,
                            .direction = direction,

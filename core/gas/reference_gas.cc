@@ -105,7 +105,7 @@ GasEvent ReferenceGas::TurnPiston(int64_t number) {
     const int64_t ball = geometry_.BallOf(number, side);
     if (ball != GasGeometry::kNoBall) LookAgain(ball, side);
   }
-  return {.kind = EventKind::kPistonWall, .piston = number};
+  return {.kind = EventKind::kPistonWall, .piston = number, .piston_energy = EnergyOf(state)};
 }
 
 // The pair's exchange, in the cell turned until the piston is on the right.
@@ -139,7 +139,9 @@ GasEvent ReferenceGas::Exchange(int64_t number) {
   return {.kind = EventKind::kBallPiston,
           .ball = number,
           .piston = piston_number,
-          .direction = direction};
+          .direction = direction,
+          .ball_energy = EnergyOf(ball.state),
+          .piston_energy = EnergyOf(piston.state)};
 }
 
 void ReferenceGas::Aim(Ball& ball) const {

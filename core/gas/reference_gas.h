@@ -17,22 +17,14 @@
 #include <vector>
 
 #include "core/billiard/cell_walls.h"
-#include "core/billiard/event_flow.h"
 #include "core/gas/event_queue.h"
 #include "core/gas/gas_geometry.h"
+#include "core/gas/gas_meter.h"
 #include "core/gas/gas_state.h"
 #include "core/gas/thermal_walls.h"
 #include "core/geometry/pair_state.h"
 
 namespace ballpiston {
-
-struct GasEvent {
-  EventKind kind = EventKind::kEscape;
-  double time = 0;
-  int64_t ball = -1;                        // of a wall hit, an exchange or an escape
-  int64_t piston = -1;                      // of a wall hit or an exchange
-  Direction direction = Direction::kRight;  // in which the ball sees the piston
-};
 
 class ReferenceGas {
  public:
@@ -48,9 +40,6 @@ class ReferenceGas {
   GasBall BallAt(int64_t ball, double time) const;
   GasPiston PistonAt(int64_t piston, double time) const;
   GasState StateAt(double time) const;
-
-  double BallEnergy(int64_t ball) const { return EnergyOf(balls_[Index(ball)].state); }
-  double PistonEnergy(int64_t piston) const { return EnergyOf(pistons_[Index(piston)].state); }
 
  private:
   // All times in here count from `origin_`.

@@ -10,7 +10,7 @@
 namespace ballpiston {
 namespace {
 
-// An orbit of the pair, with the functions of one of a gas.
+// An orbit of the pair, with the functions of one of a gas. Its events have no energies.
 class PairOrbit {
  public:
   PairOrbit(const PairGeometry& geometry, const PairState& start) : flow_(geometry, start) {}
@@ -97,11 +97,13 @@ class TraceOf final : public Trace {
   std::optional<TraceEvent> Next() override {
     const std::optional<GasEvent> event = orbit_.Step();
     if (!event) return std::nullopt;
-    const auto& [kind, time, ball, piston, direction] = *event;
+    const double time = event->time;
+    const int64_t ball = event->ball, piston = event->piston;
     TraceEvent traced;
-    traced.kind = kind;
+    traced.kind = event->kind;
     traced.time = time;
-    const auto [last, is_first] = last_.try_emplace({kind, ball, piston, direction}, time);
+    const auto [last, is_first] =
+        last_.try_emplace({event->kind, ball, piston, event->direction}, time);
     if (!is_first) traced.free_time = time - std::exchange(last->second, time);
     if (ball >= 0) traced.ball = Change(ball, orbit_.Ball(ball, time), ball_energies_);
     if (piston >= 0) traced.piston = Change(piston, orbit_.Piston(piston, time), piston_energies_);

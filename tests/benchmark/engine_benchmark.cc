@@ -30,7 +30,6 @@
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_geometry.h"
-#include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
 #include "core/gas/hit_rates.h"
 #include "core/markov/jump_process.h"
@@ -265,17 +264,16 @@ class Lattice {
     const GasRandom random(1, 2, 3);
     CounterRandom of_start = random.OfStart();
     GasState state = DrawGas(geometry_, TemperatureProfile(1), of_start);
-    meter_ = std::make_unique<GasMeter>(geometry_, state);
     std::vector<GasStart> starts;
-    starts.push_back({std::move(state), ThermalWalls(), random, meter_.get()});
+    starts.push_back({std::move(state), ThermalWalls(), random});
     run_ = StartGases(engine, geometry_, GasExchangeRate(geometry_, 1), std::move(starts));
   }
 
   // Returns the number of exchanges.
   double Advance(double duration) {
-    const uint64_t before = meter_->exchanges();
+    const uint64_t before = Exchanges();
     run_->AdvanceTo(time_ += duration);
-    return static_cast<double>(meter_->exchanges() - before);
+    return static_cast<double>(Exchanges() - before);
   }
 
   // By their exact mean rates.
@@ -289,8 +287,9 @@ class Lattice {
   }
 
  private:
+  uint64_t Exchanges() const { return run_->meters().front().exchanges(); }
+
   GasGeometry geometry_;
-  std::unique_ptr<GasMeter> meter_;
   std::unique_ptr<GasRun> run_;
   double time_ = 0;
 };

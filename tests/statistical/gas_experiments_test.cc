@@ -4,13 +4,13 @@
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
+#include "core/gas/gas_run.h"
 #include "core/gas/hit_rates.h"
 #include "tests/core/asked.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/support/nightly.h"
-#include "tools/flows/metered_gases.h"
 
 namespace ballpiston {
 namespace {
@@ -146,13 +146,13 @@ TEST(LaneGas, KeepsItsEnergyOverMillionsOfHits) {
   const double all_hits = IsNightly() ? 1e8 : 2e7;
   const GasGeometry gas = GasOf(kPaperRho, 0.1, "32x32");
   const double hits_of_time = HitRatesOf(gas.pair()).of_a_ball * static_cast<double>(gas.balls());
-  MeteredGases run(GasEngine::kLanes, gas,
-                   {{GasInEquilibrium(gas, 1, kGasSeed, 0), ThermalWalls(),
-                     GasRandom(kGasSeed, 0, 0), nullptr}});
-  const GasMeter& meter = run.meters().front();
+  const auto run = StartGases(
+      GasEngine::kLanes, gas, GasExchangeRate(gas, 1),
+      {{GasInEquilibrium(gas, 1, kGasSeed, 0), ThermalWalls(), GasRandom(kGasSeed, 0, 0)}});
+  const GasMeter& meter = run->meters().front();
   const double energy = meter.TotalEnergy();
   for (int i = 1; i <= kStretches; ++i) {
-    run.AdvanceTo(i * all_hits / kStretches / hits_of_time);
+    run->AdvanceTo(i * all_hits / kStretches / hits_of_time);
     EXPECT_LT(std::fabs(meter.TotalEnergy() / energy - 1), 5e-15) << "stretch " << i;
   }
   EXPECT_EQ(meter.escapes(), 0u);

@@ -46,7 +46,10 @@ void FixedStepGas::MovePiston(int64_t number) {
   piston.offset = std::copysign(2 * geometry_.reach(), piston.offset) - piston.offset;
   const double speed = is_thermal ? walls_.DrawSpeed(number) : std::fabs(piston.velocity);
   piston.velocity = -std::copysign(speed, piston.velocity);
-  events_.push_back({.kind = EventKind::kPistonWall, .time = Now(), .piston = number});
+  events_.push_back({.kind = EventKind::kPistonWall,
+                     .time = Now(),
+                     .piston = number,
+                     .piston_energy = EnergyOf(piston)});
 }
 
 void FixedStepGas::MoveBall(int64_t number) {
@@ -78,7 +81,8 @@ void FixedStepGas::Collide(int64_t number, Direction direction) {
   position.x() = place;
   ball.position = SeenFrom(direction, position);
   ball.velocity = SeenFrom(direction, velocity);
-  events_.push_back({EventKind::kBallPiston, Now(), number, piston_number, direction});
+  events_.push_back({EventKind::kBallPiston, Now(), number, piston_number, direction,
+                     EnergyOf(BallAt(number, Now())), EnergyOf(piston)});
 }
 
 GasBall FixedStepGas::BallAt(int64_t number, double /*time*/) const {

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "core/gas/gas_geometry.h"
+#include "core/gas/gas_meter.h"
 #include "core/gas/gas_state.h"
-#include "core/gas/reference_gas.h"
 #include "core/gas/thermal_walls.h"
 #include "tools/flows/fixed_step_flow.h"
 

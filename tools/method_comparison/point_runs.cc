@@ -116,27 +116,9 @@ void Add(const SteadyGas& gas, const GasMeter& meter, BatchMeans& means) {
   means.Add(meter.carried(), 2 * static_cast<double>(gas.geometry().balls()) * meter.duration());
 }
 
-// The gas gives its energies only at the end of the step, after all events. In a chain this does no
-// harm: the two pistons of a ball are on opposite sides, and the ball exchanges with at most one of
-// them in a step. The current is measured from the ball's energy, which is then its energy after
-// the exchange. A piston may have several events in a step; its energies between them last no time.
-// In a lattice a ball may exchange with two pistons in a step, and the transported energy would be
-// wrong.
-void Tell(const FixedStepGas& gas, const GasEvent& event, GasMeter& meter) {
-  if (event.kind == EventKind::kBallPiston) {
-    meter.Exchange({event.time, event.ball, event.piston, event.direction,
-                    EnergyOf(gas.BallAt(event.ball, event.time)),
-                    EnergyOf(gas.PistonAt(event.piston, event.time))});
-  } else if (event.kind == EventKind::kPistonWall) {
-    meter.SetPiston(event.time, event.piston, EnergyOf(gas.PistonAt(event.piston, event.time)));
-  } else if (event.kind == EventKind::kEscape) {
-    meter.CountEscape();
-  }
-}
-
 // Stops earlier if a ball is lost.
 void AdvanceTo(double time, FixedStepGas& gas, GasMeter& meter) {
-  while (meter.escapes() == 0 && gas.NextTime() <= time) Tell(gas, gas.Step(), meter);
+  while (meter.escapes() == 0 && gas.NextTime() <= time) meter.See(gas.Step());
 }
 
 void MeasureReplica(const SteadyGas& gas, double time_step, uint64_t sample, BatchMeans& means) {

@@ -66,8 +66,8 @@ void RunBlock(double end, double crossing, ReferenceGas& gas, std::vector<IdlePi
   while (gas.NextTime() < end) {
     const GasEvent event = gas.Step();
     if (event.piston < 0) continue;
-    pistons[static_cast<size_t>(event.piston)].See(event.time, gas.PistonEnergy(event.piston),
-                                                   event.ball >= 0, crossing);
+    pistons[static_cast<size_t>(event.piston)].See(event.time, event.piston_energy, event.ball >= 0,
+                                                   crossing);
   }
 }
 

@@ -92,8 +92,7 @@ auto Gas(DrawGasStart& draw, double hot = 1, double cold = 1) {
   return [&draw, hot, cold](const GasGeometry& geometry, uint64_t number) {
     const GasRandom random(kGasSeed, 0, number);
     CounterRandom of_start = random.OfStart();
-    return GasStart{draw(geometry, of_start), ThermalWalls(geometry, hot, cold, random), random,
-                    nullptr};
+    return GasStart{draw(geometry, of_start), ThermalWalls(geometry, hot, cold, random), random};
   };
 }
 

@@ -7,8 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
-
-#include "tools/flows/metered_gases.h"
+#include <utility>
 
 namespace ballpiston::stability {
 namespace {
@@ -150,80 +149,70 @@ GasState Moved(double most, const GasGeometry& geometry, GasState state, Counter
   return state;
 }
 
-GasReading ByReference(const GasGeometry& geometry, const GasStart& replica, double time) {
-  MeteredGases gases(GasEngine::kReference, geometry, {replica});
-  gases.AdvanceTo(time);
-  return ReadingOf(gases.meters().front());
+GasMeter ByReference(const GasGeometry& geometry, const GasStart& replica, double time) {
+  const auto run =
+      StartGases(GasEngine::kReference, geometry, GasExchangeRate(geometry, 1), {replica});
+  run->AdvanceTo(time);
+  return std::move(run->meters().front());
 }
 
-double Distance(const GasReading& a, const GasReading& b) {
+double Distance(const GasMeter& a, const GasMeter& b) {
   double distance = 0;
-  for (size_t i = 0; i < a.energies.size(); ++i) {
-    distance = std::max(distance, ErrorSize(a.energies[i] - b.energies[i]));
+  for (size_t i = 0; i < a.bodies(); ++i) {
+    distance = std::max(distance, ErrorSize(a.Energy(i) - b.Energy(i)));
   }
   return distance;
 }
 
-// Compares the reading with the reference, from the same start and, at each scale, from `each`
+// Compares the meter with the reference, from the same start and, at each scale, from `each`
 // neighbouring starts.
 Failures AsNeighboursTell(const GasGeometry& geometry, const GasStart& replica, double time,
-                          const GasReading& reading, std::span<const double> scales, int each) {
-  const GasReading middle = ByReference(geometry, replica, time);
+                          const GasMeter& meter, std::span<const double> scales, int each) {
+  const GasMeter middle = ByReference(geometry, replica, time);
   CounterRandom random(kNeighbourSeed, 0, 0);
-  double nearest = Distance(reading, middle), spread = 0;
+  double nearest = Distance(meter, middle), spread = 0;
   for (const double scale : scales) {
     for (int i = 0; i < each; ++i) {
       GasStart moved = replica;
       moved.state = Moved(scale * kGasEpsilon, geometry, replica.state, random);
-      const GasReading other = ByReference(geometry, moved, time);
-      nearest = std::min(nearest, Distance(reading, other));
+      const GasMeter other = ByReference(geometry, moved, time);
+      nearest = std::min(nearest, Distance(meter, other));
       spread = std::max(spread, Distance(middle, other));
     }
   }
   Failures found;
   // Two neighbours differ by at most twice their largest difference from the middle.
-  if (nearest <= 1e4 * kGasEpsilon * middle.Total() + 2 * spread) return found;
-  (reading.exchanges < middle.exchanges ? found.missed : found.phantoms) = 1;
+  if (nearest <= 1e4 * kGasEpsilon * middle.TotalEnergy() + 2 * spread) return found;
+  (meter.exchanges() < middle.exchanges() ? found.missed : found.phantoms) = 1;
   return found;
 }
 
 }  // namespace
 
-double GasReading::Total() const {
-  double sum = 0;
-  for (const double energy : energies) sum += energy;
-  return sum;
-}
-
-GasReading ReadingOf(const GasMeter& meter) {
-  GasReading reading = {.energies = {}, .exchanges = meter.exchanges()};
-  for (size_t i = 0; i < meter.bodies(); ++i) reading.energies.push_back(meter.Energy(i));
-  return reading;
-}
-
 Failures LookBack(const GasGeometry& geometry, const GasStart& replica, double time,
-                  const GasReading& reading) {
+                  const GasMeter& meter) {
   static constexpr std::array<double, 1> kBeyondRounding = {64};
   static constexpr std::array<double, 4> kScales = {1, 4, 16, 64};
-  Failures found = AsNeighboursTell(geometry, replica, time, reading, kBeyondRounding, 2);
+  Failures found = AsNeighboursTell(geometry, replica, time, meter, kBeyondRounding, 2);
   // The middle has rounding errors too. In a tip, or for a grazing ball, an ulp decides, and two
   // neighbours are not enough.
-  if (found.Total() > 0) found = AsNeighboursTell(geometry, replica, time, reading, kScales, 500);
-  found.looked_back = reading.exchanges;
+  if (found.Total() > 0) found = AsNeighboursTell(geometry, replica, time, meter, kScales, 500);
+  found.looked_back = meter.exchanges();
   return found;
 }
 
 Failures LookAtEnergies(const GasGeometry& geometry, const GasMeter& meter, double start) {
-  const GasReading reading = ReadingOf(meter);
-  const bool is_valid = std::ranges::all_of(
-      reading.energies, [](double energy) { return energy >= 0 && std::isfinite(energy); });
+  bool is_valid = true;
+  for (size_t i = 0; i < meter.bodies(); ++i) {
+    is_valid &= meter.Energy(i) >= 0 && std::isfinite(meter.Energy(i));
+  }
   Failures found;
   found.orbits = 1;
-  found.hits = reading.exchanges;
+  found.hits = meter.exchanges();
   found.escapes = meter.escapes() + (is_valid ? 0 : 1);
   if (geometry.ends() == GasEnds::kPeriodic) {
-    found.SeeEnergy(reading.Total() / start - 1);
-    found.gain.Add(reading.Total() / start - 1);
+    found.SeeEnergy(meter.TotalEnergy() / start - 1);
+    found.gain.Add(meter.TotalEnergy() / start - 1);
   }
   return found;
 }

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "core/closed_form/pair_measures.h"
+#include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
 #include "core/gas/gas_state.h"
 #include "core/gas/reference_gas.h"
 #include "core/gas/thermal_walls.h"
-#include "tools/flows/metered_gases.h"
 #include "tools/stability/ball_watch.h"
 #include "tools/stability/failures.h"
 
@@ -72,23 +72,13 @@ class GasWatch {
   double last_ = 0;   // the time of the latest event
 };
 
-// The reading of a gas's meter at one time.
-struct GasReading {
-  std::vector<double> energies;  // by body
-  uint64_t exchanges = 0;
-
-  double Total() const;
-};
-
-GasReading ReadingOf(const GasMeter& meter);
-
-// Compares the reading of a replica at `time` with the readings of the reference gas, from the same
+// Compares the meter of a replica at `time` with the meters of the reference gas, from the same
 // start and from neighbouring starts. Rounding errors grow with every hit: therefore `time` is the
 // duration of a few flights. A difference counts if the engine differs from all neighbours by more
 // than they differ from each other. It counts as missed if the engine had fewer exchanges than the
 // reference, else as a phantom.
 Failures LookBack(const GasGeometry& geometry, const GasStart& replica, double time,
-                  const GasReading& reading);
+                  const GasMeter& meter);
 
 // Checks a replica that started with the energy `start`. Counts escapes, also if an energy is not a
 // number, and, without thermal walls, the error of the energy.
@@ -105,11 +95,12 @@ Failures RunGasesByMeters(const GasGeometry& geometry, std::span<const GasStart>
                           uint64_t flights) {
   constexpr uint64_t kFewFlights = 10;
   const double flight = MeanFlight(geometry.pair());
-  MeteredGases gases(engine, geometry, {replicas.begin(), replicas.end()});
+  const auto gases = StartGases(engine, geometry, GasExchangeRate(geometry, 1),
+                                {replicas.begin(), replicas.end()});
   uint64_t calls = 0;
   const auto arrives = [&](double time) {
     while (calls++ < most_calls) {
-      if (gases.AdvanceToward(time)) return true;
+      if (gases->AdvanceToward(time)) return true;
     }
     return false;
   };
@@ -119,13 +110,13 @@ Failures RunGasesByMeters(const GasGeometry& geometry, std::span<const GasStart>
     const double soon = static_cast<double>(std::min(kFewFlights, flights)) * flight;
     if (!arrives(soon)) return endless;
     for (size_t i = 0; i < replicas.size(); ++i) {
-      failures.Merge(LookBack(geometry, replicas[i], soon, ReadingOf(gases.meters()[i])));
+      failures.Merge(LookBack(geometry, replicas[i], soon, gases->meters()[i]));
     }
   }
   if (!arrives(static_cast<double>(flights) * flight)) return endless;
   for (size_t i = 0; i < replicas.size(); ++i) {
     const double start = GasMeter(geometry, replicas[i].state).TotalEnergy();
-    failures.Merge(LookAtEnergies(geometry, gases.meters()[i], start));
+    failures.Merge(LookAtEnergies(geometry, gases->meters()[i], start));
   }
   return failures;
 }

@@ -1,8 +1,8 @@
 #include "core/gas/gas_run.h"
 
+#include "core/gas/gas_exchange_rate.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
-#include "tools/flows/metered_gases.h"
 
 namespace ballpiston {
 namespace {
@@ -17,7 +17,7 @@ std::vector<GasStart> StartsOf(const GasGeometry& geometry, uint64_t first, uint
     const GasRandom random(91, 0, replica);
     CounterRandom of_start = random.OfStart();
     GasState state = DrawGas(geometry, TemperatureProfile(1), of_start);
-    starts.push_back({std::move(state), ThermalWalls(geometry, 2, 1, random), random, nullptr});
+    starts.push_back({std::move(state), ThermalWalls(geometry, 2, 1, random), random});
   }
   return starts;
 }
@@ -25,20 +25,21 @@ std::vector<GasStart> StartsOf(const GasGeometry& geometry, uint64_t first, uint
 class Replicas {
  public:
   Replicas(GasEngine engine, const GasGeometry& geometry, uint64_t first, uint64_t count)
-      : gases_(engine, geometry, StartsOf(geometry, first, count)) {}
+      : run_(StartGases(engine, geometry, GasExchangeRate(geometry, 1),
+                        StartsOf(geometry, first, count))) {}
 
   // The window of measurement in so many calls.
   std::vector<uint64_t> BitsAfter(int calls, double end = kEnd) {
-    gases_.AdvanceTo(kWarmUp);
-    for (GasMeter& meter : gases_.meters()) meter.Begin(kWarmUp);
-    for (int i = 1; i <= calls; ++i) gases_.AdvanceTo(kWarmUp + (end - kWarmUp) * i / calls);
+    run_->AdvanceTo(kWarmUp);
+    for (GasMeter& meter : run_->meters()) meter.Begin(kWarmUp);
+    for (int i = 1; i <= calls; ++i) run_->AdvanceTo(kWarmUp + (end - kWarmUp) * i / calls);
     return Bits(end);
   }
 
  private:
   std::vector<uint64_t> Bits(double end) {
     std::vector<uint64_t> bits;
-    for (GasMeter& meter : gases_.meters()) {
+    for (GasMeter& meter : run_->meters()) {
       meter.End(end);
       EXPECT_EQ(meter.escapes(), 0u);
       bits.push_back(meter.exchanges());
@@ -51,7 +52,7 @@ class Replicas {
     return bits;
   }
 
-  MeteredGases gases_;
+  std::unique_ptr<GasRun> run_;
 };
 
 class GasRunOfEngine : public testing::TestWithParam<GasEngine> {};
@@ -85,6 +86,11 @@ INSTANTIATE_TEST_SUITE_P(GasRun, GasRunOfEngine,
                          testing::Values(GasEngine::kReference, GasEngine::kLanes,
                                          GasEngine::kJumps));
 
+GasEvent ExchangeAt(double time, int64_t ball, int64_t piston, Direction direction,
+                    double ball_energy, double piston_energy) {
+  return {EventKind::kBallPiston, time, ball, piston, direction, ball_energy, piston_energy};
+}
+
 // A hand-made history: ball 0 has energy 1 until 1, then 3; it sees piston 1 on its right.
 TEST(GasMeter, CountsAndAverages) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "3");
@@ -94,11 +100,11 @@ TEST(GasMeter, CountsAndAverages) {
   GasMeter meter(gas, start);
   ASSERT_EQ(meter.balls(), 3u);
   ASSERT_EQ(meter.bodies(), 6u);
-  meter.Exchange({0.5, 1, 2, Direction::kRight, 7, 7});  // before the window
+  meter.See(ExchangeAt(0.5, 1, 2, Direction::kRight, 7, 7));  // before the window
   meter.Begin(0.5);
-  meter.Exchange({1, 0, 1, Direction::kRight, 3, 0.5});  // 2 from the right to the left
-  meter.Exchange({2, 2, 2, Direction::kLeft, 0.75, 1});  // 1/4 to the left
-  meter.SetPiston(2.5, 0, 9);
+  meter.See(ExchangeAt(1, 0, 1, Direction::kRight, 3, 0.5));  // 2 from the right to the left
+  meter.See(ExchangeAt(2, 2, 2, Direction::kLeft, 0.75, 1));  // 1/4 to the left
+  meter.See({.kind = EventKind::kPistonWall, .time = 2.5, .piston = 0, .piston_energy = 9});
   meter.End(4.5);
   EXPECT_EQ(meter.exchanges(), 2u);
   EXPECT_DOUBLE_EQ(meter.duration(), 4);
@@ -116,8 +122,8 @@ TEST(GasMeter, ExchangesAlongYCarryNoEnergyAlongX) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2");
   GasMeter meter(gas, GasInEquilibrium(gas, 1, 92, 0));
   meter.Begin(0);
-  meter.Exchange({1, 0, gas.PistonOf(0, Direction::kUp), Direction::kUp, 3, 0.5});
-  meter.Exchange({2, 0, gas.PistonOf(0, Direction::kDown), Direction::kDown, 1, 0.5});
+  meter.See(ExchangeAt(1, 0, gas.PistonOf(0, Direction::kUp), Direction::kUp, 3, 0.5));
+  meter.See(ExchangeAt(2, 0, gas.PistonOf(0, Direction::kDown), Direction::kDown, 1, 0.5));
   meter.End(3);
   EXPECT_EQ(meter.carried(), 0);
   EXPECT_EQ(meter.exchanges(), 2u);

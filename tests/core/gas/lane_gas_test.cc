@@ -1,9 +1,9 @@
 #include "core/gas/lane_gas.h"
 
 #include "core/closed_form/pair_measures.h"
+#include "core/gas/gas_exchange_rate.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
-#include "tools/flows/metered_gases.h"
 
 namespace ballpiston {
 namespace {
@@ -20,13 +20,13 @@ Outcome OutcomeOf(GasEngine engine, const GasGeometry& geometry, uint64_t replic
   std::vector<GasStart> starts;
   for (uint64_t i = 0; i < replicas; ++i) {
     const GasRandom random(41, 0, i);
-    starts.push_back({GasInEquilibrium(geometry, 1, 42, i),
-                      ThermalWalls(geometry, hot, cold, random), random, nullptr});
+    starts.push_back(
+        {GasInEquilibrium(geometry, 1, 42, i), ThermalWalls(geometry, hot, cold, random), random});
   }
-  MeteredGases gases(engine, geometry, std::move(starts));
-  gases.AdvanceTo(time);
+  const auto gases = StartGases(engine, geometry, GasExchangeRate(geometry, 1), std::move(starts));
+  gases->AdvanceTo(time);
   Outcome outcome;
-  for (const GasMeter& meter : gases.meters()) {
+  for (const GasMeter& meter : gases->meters()) {
     for (size_t body = 0; body < meter.bodies(); ++body) {
       outcome.energies.push_back(meter.Energy(body));
     }
@@ -76,9 +76,8 @@ TEST(LaneGas, PistonsKeepTheirMotionWhenTheOriginMoves) {
   const GasGeometry gas = GasOf(kPaperRho, 0.15, "2x2");
   GasState start = GasInEquilibrium(gas, 1, 46, 0);
   for (GasBall& ball : start.balls) ball = {};
-  GasMeter meter(gas, start);
   const auto run = StartGases(GasEngine::kLanes, gas, GasExchangeRate(gas, 1),
-                              {{start, ThermalWalls(), GasRandom(46, 0, 0), &meter}});
+                              {{start, ThermalWalls(), GasRandom(46, 0, 0)}});
   run->AdvanceTo(kTime);
   const GasState state = run->StateOf(0);
   for (size_t i = 0; i < state.pistons.size(); ++i) {
@@ -93,9 +92,10 @@ TEST(LaneGas, PistonsKeepTheirMotionWhenTheOriginMoves) {
   }
 }
 
-MeteredGases InLanes(const GasGeometry& gas, const GasState& state) {
+std::unique_ptr<GasRun> InLanes(const GasGeometry& gas, const GasState& state) {
   const GasRandom random(45, 0, 0);
-  return {GasEngine::kLanes, gas, {{state, ThermalWalls(gas, 1, 1, random), random, nullptr}}};
+  return StartGases(GasEngine::kLanes, gas, GasExchangeRate(gas, 1),
+                    {{state, ThermalWalls(gas, 1, 1, random), random}});
 }
 
 // The piston moves ahead of the ball. Both reach the tip at the same time, to within some ulps.
@@ -112,9 +112,9 @@ uint64_t MeetInTheTip(const GasGeometry& gas, CounterRandom& random) {
   state.pistons.resize(static_cast<size_t>(gas.pistons()));
   state.pistons[0] = {.offset = tip.x() - kWay * speed * direction.x() - 0.5 + off,
                       .velocity = speed * direction.x()};
-  MeteredGases gases = InLanes(gas, state);
-  gases.AdvanceTo(1);
-  const GasMeter& meter = gases.meters().front();
+  const auto gases = InLanes(gas, state);
+  gases->AdvanceTo(1);
+  const GasMeter& meter = gases->meters().front();
   EXPECT_EQ(meter.escapes(), 0u);
   EXPECT_NEAR(meter.TotalEnergy(), EnergyOf(state), 1e-14);
   return meter.exchanges();
@@ -142,12 +142,12 @@ TEST(LaneGas, AnEscapedBallStopsAndCountsOnce) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "3");
   GasState state = GasInEquilibrium(gas, 1, 44, 0);
   state.balls[1] = {.position = {0.47, 0.4}, .direction = {1, 0}, .speed = 1};
-  MeteredGases gases = InLanes(gas, state);
-  const GasMeter& meter = gases.meters().front();
-  gases.AdvanceTo(1);
+  const auto gases = InLanes(gas, state);
+  const GasMeter& meter = gases->meters().front();
+  gases->AdvanceTo(1);
   EXPECT_EQ(meter.escapes(), 1u);
   const double energy = meter.Energy(1);
-  gases.AdvanceTo(100);
+  gases->AdvanceTo(100);
   EXPECT_EQ(meter.escapes(), 1u);
   EXPECT_EQ(meter.Energy(1), energy);
 }
@@ -155,11 +155,11 @@ TEST(LaneGas, AnEscapedBallStopsAndCountsOnce) {
 // Here a cell is as small as the rounding of places, and balls escape soon.
 TEST(LaneGas, AGasThatLosesItsBallsEnds) {
   const GasGeometry gas = GasOf(0.7071067811865475, 4.4e-17, "3", GasEnds::kReservoirs);
-  MeteredGases gases = InLanes(gas, GasInEquilibrium(gas, 1, 45, 0));
+  const auto gases = InLanes(gas, GasInEquilibrium(gas, 1, 45, 0));
   int calls = 0;
-  while (!gases.AdvanceToward(100'000 * MeanFlight(gas.pair()))) ASSERT_LE(++calls, 100);
-  EXPECT_GT(gases.meters().front().escapes(), 0u);
-  EXPECT_LE(gases.meters().front().escapes(), 3u);
+  while (!gases->AdvanceToward(100'000 * MeanFlight(gas.pair()))) ASSERT_LE(++calls, 100);
+  EXPECT_GT(gases->meters().front().escapes(), 0u);
+  EXPECT_LE(gases->meters().front().escapes(), 3u);
 }
 
 // A gas at rest except for one piston, which comes to a resting ball within its reach.
@@ -171,12 +171,12 @@ TEST(LaneGas, ThePistonMeetsABallAtRestAtItsPlace) {
   const auto piston = static_cast<size_t>(gas.PistonOf(1, Direction::kRight));
   state.balls[1].position = {gas.pair().tip() - 0.05, 0};
   state.pistons[piston] = {.offset = 0, .velocity = -1};
-  MeteredGases gases = InLanes(gas, state);
-  const GasMeter& meter = gases.meters().front();
+  const auto gases = InLanes(gas, state);
+  const GasMeter& meter = gases->meters().front();
   const double way = gas.pair().lambda() / 2 + 0.05;
-  gases.AdvanceTo(way - 1e-6);
+  gases->AdvanceTo(way - 1e-6);
   EXPECT_EQ(meter.exchanges(), 0u);
-  gases.AdvanceTo(way + 1e-6);
+  gases->AdvanceTo(way + 1e-6);
   EXPECT_EQ(meter.exchanges(), 1u);
   EXPECT_NEAR(meter.Energy(1), 0.5, 1e-12);  // the ball has the piston's velocity
   EXPECT_EQ(meter.Energy(3 + piston), 0);

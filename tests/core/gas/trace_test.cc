@@ -60,9 +60,8 @@ void ExpectAtTheSamePlace(const GasGeometry& gas, const TraceEvent& event) {
   EXPECT_EQ(event.piston->after.velocity[1 - axis], 0);
 }
 
-// The reference has moved to the expected event.
 void ExpectSameEvent(const GasGeometry& gas, const std::optional<TraceEvent>& traced,
-                     const ReferenceGas& reference, const GasEvent& expected) {
+                     const GasEvent& expected) {
   ASSERT_TRUE(traced);
   ASSERT_EQ(traced->kind, expected.kind);
   ASSERT_EQ(traced->time, expected.time);
@@ -70,13 +69,15 @@ void ExpectSameEvent(const GasGeometry& gas, const std::optional<TraceEvent>& tr
   ASSERT_EQ(traced->piston ? traced->piston->index : -1, expected.piston);
   if (traced->ball) {
     const TracedBody& ball = traced->ball->after;
-    ASSERT_EQ(ball.energy, reference.BallEnergy(expected.ball));
+    if (traced->piston) {
+      ASSERT_EQ(ball.energy, expected.ball_energy);
+    }
     const Eigen::Vector2d cell(static_cast<double>(expected.ball % gas.shape().columns),
                                static_cast<double>(expected.ball / gas.shape().columns));
     ASSERT_TRUE(InsideCell(gas.pair(), ball.position - cell, kRounding));
   }
   if (traced->piston) {
-    ASSERT_EQ(traced->piston->after.energy, reference.PistonEnergy(expected.piston));
+    ASSERT_EQ(traced->piston->after.energy, expected.piston_energy);
   }
 }
 
@@ -100,7 +101,7 @@ void ExpectEventsOfTheReferenceAndStraightFlights(const GasGeometry& gas) {
   for (int i = 0; i < 10'000; ++i) {
     const auto event = trace->Next();
     const GasEvent expected = moving.Step();
-    ASSERT_NO_FATAL_FAILURE(ExpectSameEvent(gas, event, moving, expected));
+    ASSERT_NO_FATAL_FAILURE(ExpectSameEvent(gas, event, expected));
     const bool is_exchange = event->kind == EventKind::kBallPiston;
     ASSERT_NEAR(EnergyGain(*event), 0, is_exchange ? 1e-14 * energy : 0);
     if (is_exchange) ExpectAtTheSamePlace(gas, *event);

@@ -52,6 +52,8 @@ TEST(FixedStepGas, ABallThatHasPassedAPistonExchanges) {
     EXPECT_EQ(event.ball, 4);
     EXPECT_EQ(event.piston, piston);
     EXPECT_EQ(event.direction, direction);
+    EXPECT_DOUBLE_EQ(event.ball_energy, 0.6 * 0.6 / 2);
+    EXPECT_DOUBLE_EQ(event.piston_energy, 0.8 * 0.8 / 2);
     EXPECT_DOUBLE_EQ(event.time, 0.08);
     const GasBall ball = gas.BallAt(4, event.time);
     EXPECT_DOUBLE_EQ(ball.speed, 0.6);
