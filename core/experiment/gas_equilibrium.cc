@@ -396,11 +396,13 @@ Scatter ScatterOfTheRate(Model model, const PointParameters& point) {
   return {std::sqrt(1.3 / (contacts * ExchangesOf(model, geometry)) + 0.5 / freedom)};
 }
 
-// Measured errors. From four cells on they hardly depend on the number of cells, because the error
-// of a correlation is proportional to its scale for any number of cells. The jump process measures
-// only the correction, which is 0 but for rounding in one column.
+// Measured errors. Those of large gases do not depend on the number of cells, because the error of a
+// correlation is proportional to its scale for any number of cells. The jump process measures only
+// the correction, which is 0 but for rounding in one column.
 double ErrorOfConductivity(Model model, const GasShape& shape) {
-  if (model != Model::kMarkov) return shape.is_lattice ? 2 : 2.5;
+  if (model != Model::kMarkov) {
+    return (shape.is_lattice ? 1.9 : 2.3) * (1 + 1 / static_cast<double>(shape.cells()));
+  }
   if (shape.columns == 1) return std::numeric_limits<double>::epsilon();
   if (shape.columns == 2) return shape.is_lattice && shape.rows == 1 ? 0.0007 : 0.0003;
   return shape.rows > 1 ? 0.0005 : 0.001;

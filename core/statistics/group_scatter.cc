@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/statistics/moments.h"
+
 namespace ballpiston {
 namespace {
 
@@ -18,6 +20,7 @@ class GroupProducts {
     double all = 0;
     for (const double total : shares_) all += total;
     for (double& share : shares_) share /= all;
+    samples_ = all;
     const size_t cells = groups[0].counts.size(), of_a_row = cells / rows;
     for (size_t first = 0; first < cells; first += of_a_row) AddRow(first, of_a_row);
   }
@@ -27,6 +30,12 @@ class GroupProducts {
   // cell and -1/n_r for two of one row. Its squares sum to freedom(), but a sample with itself
   // hardly scatters, with 2/G of the scatter of others.
   double freedom_of_pairs() const { return freedom_ - (1 - 2.0 / kGroups) * of_themselves_; }
+  // The part of the variance of Q_gg/(s (1 - s)), s the group's share, that comes from each
+  // independent sample with itself.
+  double ScatterOfThemselves() const {
+    return std::pow(kGroups - 2.0, 2) / (kGroups - 1) *
+           std::max(of_themselves_ - freedom_ * freedom_ / samples_, 0.0);
+  }
   double Of(size_t g, size_t h) const { return products_[g][h]; }
   double Share(size_t g) const { return shares_[g]; }
 
@@ -71,6 +80,7 @@ class GroupProducts {
 
   std::span<const Histogram> groups_;
   ByGroup shares_ = {};
+  double samples_ = 0;
   double freedom_ = 0;        // cells less rows, without empty ones
   double of_themselves_ = 0;  // sum of squares of the form for each sample with itself
   std::array<ByGroup, kGroups> products_ = {};
@@ -89,9 +99,12 @@ GroupScatter ScatterOfGroups(std::span<const Histogram> groups, size_t rows) {
   if (products.freedom_of_pairs() <= 0) return {};
   constexpr double kPairs = kGroups * (kGroups - 1) / 2.0;
   double on_diagonal = 0, pairs_of_shares = 0;
+  Moments own;  // Q_gg/(s (1 - s))
   for (size_t g = 0; g < kGroups; ++g) {
+    const double share = products.Share(g) * (1 - products.Share(g));
     on_diagonal += products.Of(g, g);
-    pairs_of_shares += products.Share(g) * (1 - products.Share(g)) / 2;
+    pairs_of_shares += share / 2;
+    own.Add(products.Of(g, g) / share);
   }
   double scatter = 0;
   for (size_t g = 0; g < kGroups; ++g) {
@@ -100,8 +113,11 @@ GroupScatter ScatterOfGroups(std::span<const Histogram> groups, size_t rows) {
     }
   }
   scatter *= kPairs / kFreedomOfPairs;
-  return {on_diagonal / (2 * pairs_of_shares * products.freedom()),
-          scatter / (pairs_of_shares * products.freedom_of_pairs())};
+  const double of_pairs = scatter / (pairs_of_shares * products.freedom_of_pairs());
+  const double of_a_group =
+      (*own.Variance() - products.ScatterOfThemselves()) / (2 * products.freedom_of_pairs());
+  const double of_orbits = std::max(of_a_group - of_pairs, 0.0) / kGroups;
+  return {on_diagonal / (2 * pairs_of_shares * products.freedom()), of_pairs, of_orbits};
 }
 
 double VarianceBetweenGroups(std::span<const Histogram> groups, std::span<const double> weights) {

@@ -8,6 +8,7 @@
 
 #include "core/arithmetic/elementary_functions.h"
 #include "core/statistics/group_scatter.h"
+#include "core/statistics/moments.h"
 
 namespace ballpiston {
 namespace {
@@ -197,46 +198,56 @@ struct Sums {
   }
 };
 
-// The sums over rows, as for independent samples, but without a standard error.
-KlDivergence OfRows(std::span<const uint64_t> counts, size_t rows) {
+double Total(std::span<const uint64_t> counts) {
+  double total = 0;
+  for (const uint64_t count : counts) total += static_cast<double>(count);
+  return total;
+}
+
+// Of each row to the uniform law.
+double ValueOfRows(std::span<const uint64_t> counts, size_t rows) {
   const size_t cells = counts.size() / rows;
-  KlDivergence all;
-  double samples = 0, noise_variance = 0;
+  double information = 0;
   for (size_t row = 0; row < rows; ++row) {
     const std::span of_row = counts.subspan(row * cells, cells);
-    Sums sums;
-    for (const uint64_t count : of_row) sums.samples += static_cast<double>(count);
-    if (sums.samples == 0) continue;
-    const double mean = sums.samples / static_cast<double>(cells);
-    for (const uint64_t count : of_row) sums.Add(count, mean);
-    sums.noise = NoiseOfCell(sums.samples, 1.0 / static_cast<double>(cells))
-                     .Times(static_cast<double>(cells));
-    samples += sums.samples;
-    all.value += sums.information;
-    all.noise_floor += sums.noise.mean;
-    all.cells += static_cast<int>(cells);
-    noise_variance += sums.noise.VarianceOfSum(sums.samples);
+    const double mean = Total(of_row) / static_cast<double>(cells);
+    for (const uint64_t count : of_row) {
+      if (count > 0) information += Information(static_cast<double>(count), mean);
+    }
   }
+  return information / Total(counts);
+}
+
+// With the noise of independent samples, and without a standard error.
+KlDivergence OfRows(std::span<const uint64_t> counts, size_t rows) {
+  const double samples = Total(counts);
   if (samples == 0) return {};
-  all.value /= samples;
-  all.noise_floor /= samples;
+  const size_t cells = counts.size() / rows;
+  const auto of_cells = static_cast<double>(cells);
+  KlDivergence all = {.value = ValueOfRows(counts, rows)};
+  double noise_variance = 0;
+  for (size_t row = 0; row < rows; ++row) {
+    const double of_row = Total(counts.subspan(row * cells, cells));
+    if (of_row == 0) continue;
+    const CellNoise noise = NoiseOfCell(of_row, 1 / of_cells).Times(of_cells);
+    all.noise_floor += noise.mean / samples;
+    all.cells += static_cast<int>(cells);
+    noise_variance += noise.VarianceOfSum(of_row);
+  }
   all.noise_error = std::sqrt(noise_variance) / samples;
   return all;
 }
 
-// log(p/q) less its mean, by cell.
-std::vector<double> Deviations(std::span<const uint64_t> counts, size_t rows, double mean) {
-  const size_t cells = counts.size() / rows;
-  std::vector<double> deviations(counts.size());
-  for (size_t i = 0; i < counts.size(); ++i) {
-    double of_row = 0;
-    for (const uint64_t count : counts.subspan(i / cells * cells, cells)) {
-      of_row += static_cast<double>(count);
-    }
-    const double expected = of_row / static_cast<double>(cells);
-    deviations[i] = counts[i] == 0 ? 0 : Log(static_cast<double>(counts[i]) / expected) - mean;
+// The jackknife of groups. It counts pairs of samples of different groups twice, as in Sums.
+double JackknifeVariance(std::span<const Histogram> groups, std::span<const uint64_t> counts,
+                         size_t rows) {
+  Moments values;
+  std::vector<uint64_t> others(counts.size());
+  for (const Histogram& group : groups) {
+    std::ranges::transform(counts, group.counts, others.begin(), std::minus<>());
+    values.Add(ValueOfRows(others, rows));
   }
-  return deviations;
+  return *values.Variance() * Square(kGroups - 1) / kGroups;
 }
 
 }  // namespace
@@ -244,7 +255,7 @@ std::vector<double> Deviations(std::span<const uint64_t> counts, size_t rows, do
 KlDivergence RelativeEntropy(std::span<const uint64_t> counts,
                              std::span<const double> probabilities) {
   Sums sums;
-  for (const uint64_t count : counts) sums.samples += static_cast<double>(count);
+  sums.samples = Total(counts);
   for (size_t i = 0; i < counts.size(); ++i) {
     sums.Add(counts[i], sums.samples * probabilities[i]);
     sums.cells += probabilities[i] > 0;
@@ -253,25 +264,20 @@ KlDivergence RelativeEntropy(std::span<const uint64_t> counts,
   return sums.Divergence();
 }
 
-// To second order in the counts' deviations from their means the divergence is a sum of log(p/q)
-// over samples, whose variance the groups give, and half a chi-squared. The noise of log(p/q) adds
-// twice the variance of the second part to that of the first.
 KlDivergence DivergenceWithinRows(std::span<const Histogram> groups, size_t rows) {
   const std::vector<uint64_t> counts = CountsOf(groups);
   KlDivergence kl = OfRows(counts, rows);
   if (!HaveSamples(groups)) return kl;
   const GroupScatter scatter = ScatterOfGroups(groups, rows);
+  const double of_pairs = scatter.of_pairs * Square(kl.noise_error);
+  const double noise = of_pairs + scatter.of_orbits * Square(kl.noise_error);
   kl.noise_floor *= scatter.chi_squared;
-  kl.noise_error *= std::sqrt(scatter.chi_squared_variance);
-  double samples = 0;
-  for (const uint64_t count : counts) samples += static_cast<double>(count);
-  const double noise = Square(kl.noise_error);
-  const double of_logarithm =
-      VarianceBetweenGroups(groups, Deviations(counts, rows, kl.value)) / Square(samples);
-  const double beyond = BeyondNoise(kl) * std::max(of_logarithm - 2 * noise, 0.0);
+  kl.noise_error = std::sqrt(noise);
+  const double jackknife = JackknifeVariance(groups, counts, rows);
+  const double beyond = BeyondNoise(kl) * std::max(jackknife - of_pairs - noise, 0.0);
   kl.standard_error = std::sqrt(noise + beyond);
-  kl.batches = 1 + static_cast<uint64_t>(
-                       std::lround(FreedomOfSum(noise, kFreedomOfPairs, beyond, kFreedomOfGroups)));
+  kl.batches = 1 + static_cast<uint64_t>(std::lround(FreedomOfSum(
+                       of_pairs, kFreedomOfPairs, noise - of_pairs + beyond, kFreedomOfGroups)));
   return kl;
 }
 

@@ -27,7 +27,7 @@ void ExpectScatter(int samples, uint64_t repeats, double chi_squared, double var
   for (uint64_t seed = 1; seed <= 300; ++seed) {
     const GroupScatter scatter = ScatterOfGroups(Groups(seed, 100, samples, repeats), kRows);
     first.Add(scatter.chi_squared);
-    second.Add(scatter.chi_squared_variance);
+    second.Add(scatter.of_pairs + scatter.of_orbits);
   }
   EXPECT_NEAR(first.mean, chi_squared, 5 * *first.StandardError());
   EXPECT_NEAR(second.mean, variance, 5 * *second.StandardError());
@@ -41,6 +41,37 @@ TEST(GroupScatter, IndependentSamplesScatterAsExpected) {
 
 // The counts' variances are three times as large, and so is a chi-squared.
 TEST(GroupScatter, RepeatedSamplesCountOnce) { ExpectScatter(10, 3, 3, 9); }
+
+// One orbit in 150 stays in one cell. The variance of the chi-squared of all samples is known from
+// 300 of them to about 10 %. Pairs alone give less than half of it.
+TEST(GroupScatter, OrbitsThatStayInACellAddTheirOwnScatter) {
+  constexpr int kOrbits = 300, kSamples = 300;
+  Moments chi_squared, stated, of_pairs;
+  for (uint64_t seed = 1; seed <= 300; ++seed) {
+    std::vector<Histogram> groups(kGroups, Histogram::OfBins(0, 1, kCells));
+    CounterRandom random(seed, 2, 0);
+    for (size_t orbit = 0; orbit < kOrbits; ++orbit) {
+      const bool stays = random.Uniform() < 1 / 150.0;
+      double x = random.Uniform();
+      for (int i = 0; i < kSamples; ++i) {
+        groups[orbit % kGroups].Add(x);
+        if (!stays) x = random.Uniform();
+      }
+    }
+    const double expected = double{kOrbits} * kSamples / kCells;
+    double sum = 0;
+    for (const uint64_t count : CountsOf(groups)) {
+      sum += std::pow(static_cast<double>(count) - expected, 2) / expected;
+    }
+    chi_squared.Add(sum);
+    const GroupScatter scatter = ScatterOfGroups(groups, 1);
+    stated.Add(scatter.of_pairs + scatter.of_orbits);
+    of_pairs.Add(scatter.of_pairs);
+  }
+  const double measured = *chi_squared.Variance() / (2 * (kCells - 1));
+  EXPECT_LT(of_pairs.mean, measured / 2);
+  EXPECT_NEAR(stated.mean / measured, 1, 0.25);
+}
 
 TEST(GroupScatter, VarianceOfASumIsThatOfItsGroups) {
   std::vector<Histogram> groups(kGroups, Histogram::OfBins(0, 1, 2));
