@@ -31,7 +31,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // The lanes fly in bursts of some flights each (lane_burst-inl.h). After a burst the engine
 // examines the flights that began or ended in the piston's reach, reports the collisions that it
-// finds to the source, and gives the lanes their next orbits. So the flights have no branches.
+// finds to the source, and gives the lanes their next orbits. The flights need no branches.
 // After a collision the ball may be anywhere in the cell (FrameOfBall); the lanes accept such a
 // state.
 //
@@ -276,8 +276,8 @@ class LaneOrbits : public EngineRun {
 
   // ---- between bursts ----
 
-  // Gives the lanes their next orbits. An orbit with a ball at rest collides at once. If there are
-  // very many such orbits, the next call of Refill starts the rest.
+  // Gives the lanes their next orbits. A ball at rest collides, or is lost, at once. After
+  // kCallsBetweenLooks calls of the source the next Refill starts the remaining orbits.
   void Refill() {
     while (!entries_.empty() || StartNew()) {
       const auto [lane, start] = entries_.back();
@@ -302,6 +302,7 @@ class LaneOrbits : public EngineRun {
         parked_ = std::min(parked_, idle_.size());
         return true;
       }
+      --calls_left_;
       source_.Collide(start->orbit, OrbitInLane::Escape());
     }
     return false;
@@ -369,7 +370,7 @@ class LaneOrbits : public EngineRun {
   std::vector<uint64_t> entry_burst_;  // by lane
   std::vector<size_t> idle_;           // lanes without an orbit
   size_t parked_ = 0;                  // of them, the first ones
-  std::vector<Entry> entries_;         // before the next burst
+  std::vector<Entry> entries_;         // orbits that enter a lane before the next burst
   bool source_is_empty_ = false;       // at the last call of Next
   int64_t calls_left_ = 0;             // starts and collisions until the next call of Pause
   std::conditional_t<kFollowsTangents, LaneTangents<T>, std::monostate> tangents_;

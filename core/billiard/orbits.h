@@ -48,10 +48,11 @@ struct Collision {
   // Rounding has lost the orbit: it left the cell, or waited longer than any orbit does
   // (longest_wait.h). All other fields are meaningless.
   bool escaped = false;
-  bool expired = false;  // no collision within the time limit; `state` is meaningless, and `time`
-                         // means only that the limit has passed
-  // Of the ball since the orbit's start or its previous collision. Only in the lanes, if the source
-  // follows tangents; else, and of a ball at rest, the identity.
+  // No collision within the time limit: `time` means only that the limit has passed, and all other
+  // fields are meaningless.
+  bool expired = false;
+  // The tangent map of the ball's flights since the orbit's start or its previous collision. Only
+  // in the lanes, if the source follows tangents; otherwise, and for a ball at rest, the identity.
   BallMap flights = {};
 
   void Add(const Event& event);  // adds an event before the collision
@@ -92,8 +93,9 @@ class OrbitSource {
   // The device that computes the flights of kLanes instead of the processor; null: none. Orbits
   // with tangents never use it. It must outlive the run.
   virtual OrbitDevice* Device() const { return nullptr; }
-  // True if the engine should return. The engine asks about 5000 times a second, and at least every
-  // 0.05 s if a call of Next or Collide takes at most 10 us.
+  // True if the engine should return. The processor's engines ask about 5000 times a second, and at
+  // least every 0.05 s if a call of Next or Collide takes at most 10 us. A run on a device asks
+  // once in each launch.
   virtual bool Pause() = 0;
 };
 

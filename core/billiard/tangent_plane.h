@@ -41,7 +41,7 @@ class TangentPlane {
   TangentPlane() = default;
   TangentPlane(const PairGeometry&, const PairState& /*start*/) {}
 
-  // A wait, and the collision that ends it.
+  // Follows a wait and the collision that ends it. Needs `collision.flights`.
   void Collide(const Collision& collision);
 
   // The logarithms of the factors by which the two directions have grown since the last call.

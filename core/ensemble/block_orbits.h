@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -33,8 +32,8 @@ struct OrbitSamples {
 //   PairState Start(const Context&, const OrbitSamples&);                     called once
 //   AfterCollision Collide(const Context&, const Collision&);                 not for an escape
 //   void AddTo(const Context&, BlockResult&) const;    in their order, after all orbits have ended
-// An orbit with tangent vectors has them in a std::optional `tangents`. Those of the reference
-// (OrbitSource::FollowEvent) have this function:
+// An orbit with tangent vectors has them in a std::optional `tangents`. If the reference computes
+// the orbits, the tangents have this function, which FollowEvent calls:
 //   void Follow(const Event& event, const PairState& after);
 template <typename Orbit, typename Context>
 class BlockOrbits {

@@ -457,7 +457,8 @@ Forecast ForecastOfGasConduction(Model model, const PointParameters& point) {
 // The root of the current's variance in local equilibrium, 2 kappa T^2/(N t), over the current.
 // kappa T^2 grows as T^(5/2); Simpson's rule gives its mean over the gas. The last pistons pass the
 // current in portions, one for each crossing: their number scatters, and their energy as much. Slow
-// pistons determine the error. Measured errors are up to 30 % larger; kMeasured is in the middle.
+// pistons determine the error. Measured errors are up to 30 % larger than this; the factor is the
+// middle of the range.
 Scatter ScatterOfTheCurrent(Model model, const PointParameters& point) {
   const GasGeometry geometry = OpenGasOf(point);
   const double temperature = MeanTemperature(point);
@@ -471,8 +472,8 @@ Scatter ScatterOfTheCurrent(Model model, const PointParameters& point) {
   const auto rows = static_cast<double>(geometry.shape().rows);
   const double of_the_gas = 2 * mean_power * columns / (conductivity * time * rows * fall * fall);
   const double of_the_portions = 2 * CrossingTime(model, geometry, cold) / (time * rows);
-  constexpr double kMeasured = 1.15;
-  return {kMeasured * std::sqrt(of_the_gas + of_the_portions)};
+  constexpr double kMeasuredOverTheory = 1.15;
+  return {kMeasuredOverTheory * std::sqrt(of_the_gas + of_the_portions)};
 }
 
 std::optional<double> LimitErrorOfConduction(const PointParameters& point) {

@@ -297,7 +297,7 @@ struct ReplicasOfBlock {
 struct Replica {
   uint64_t number;  // of OpenBlocks
   double energy_at_start;
-  std::unique_ptr<CurrentMeter> current;  // until the run has it
+  std::unique_ptr<CurrentMeter> current;  // null after the run's meter has taken it
 };
 
 // Computes several replicas at a time, of several blocks if these are small, to fill the lanes.
@@ -396,9 +396,9 @@ Scatter ScatterOfTheRate(Model model, const PointParameters& point) {
   return {std::sqrt(1.3 / (contacts * ExchangesOf(model, geometry)) + 0.5 / freedom)};
 }
 
-// Measured errors. Those of large gases do not depend on the number of cells, because the error of a
-// correlation is proportional to its scale for any number of cells. The jump process measures only
-// the correction, which is 0 but for rounding in one column.
+// Measured errors. They fall with the number of cells to a constant, because the error of a
+// correlation is proportional to its scale; 1 + 1/cells fits small gases. The jump process measures
+// only the correction, which is 0 up to rounding in one column.
 double ErrorOfConductivity(Model model, const GasShape& shape) {
   if (model != Model::kMarkov) {
     return (shape.is_lattice ? 1.9 : 2.3) * (1 + 1 / static_cast<double>(shape.cells()));

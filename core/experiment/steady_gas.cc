@@ -59,7 +59,7 @@ class GroupRun : public EngineRun {
     group_ = is_first ? shape.NewGroup() : shape.Read(block_->start);
     if (is_first) DrawStarts();
     stretches_ = 0;
-    is_measuring_ = group_.measured > 0 || (group_.stretches >= WarmUp() && WarmUpEnds());
+    is_measuring_ = group_.measured > 0 || (group_.stretches >= WarmUp() && JudgeWarmUp());
     Start();
   }
 
@@ -84,20 +84,21 @@ class GroupRun : public EngineRun {
                       std::move(starts));
   }
 
-  // A later stretch of the chunk. The warm-up may end within the chunk.
+  // Begins a stretch after the chunk's first one. Within a chunk the warm-up is judged only once,
+  // at its minimum length; later at the beginning of a chunk.
   void BeginStretch() {
     if (is_measuring_ || group_.stretches != WarmUp()) return;
-    is_measuring_ = WarmUpEnds();
+    is_measuring_ = JudgeWarmUp();
     if (!is_measuring_) return;
     for (GasMeter& meter : run_->meters()) meter.Begin(Now());
   }
 
   double WarmUp() const { return static_cast<double>(experiment_.trajectories().warm_up); }
 
-  // Judges a warm-up that is long enough to end now. Keeps the energies, from which the next
-  // judgement counts. At a chunk's beginning they are those of the states: in its run the jump
-  // process sets the energies of its outermost pistons, which may then differ by rounding.
-  bool WarmUpEnds() {
+  // Decides whether the warm-up ends now, and stores the energies for the next decision. At the
+  // beginning of a chunk it takes the energies of the states, because the run of the jump process
+  // sets the energies of its outermost pistons, which changes them by rounding.
+  bool JudgeWarmUp() {
     double change = 0;
     for (size_t i = 0; i < trajectories().size(); ++i) {
       SteadyTrajectory& trajectory = trajectories()[i];

@@ -1,5 +1,5 @@
 // Measures a gas in a time window: the number of exchanges, the energy that is carried along x, and
-// each body's mean energy. The engine reports every exchange to the meter, in the order of time.
+// each body's mean energy. The engine reports its events to the meter, in the order of time.
 // The meter forwards exchanges to a meter of the current, if it has one.
 //
 // Bodies are the balls, then the pistons. Not thread-safe.
@@ -18,6 +18,7 @@
 
 namespace ballpiston {
 
+// A field that the event does not have keeps its default.
 struct GasEvent {
   EventKind kind = EventKind::kEscape;
   double time = 0;
@@ -37,7 +38,7 @@ class GasMeter {
     for (const GasPiston& piston : start.pistons) bodies_.push_back({.energy = EnergyOf(piston)});
   }
 
-  // The current is measured from time 0 on.
+  // The current is measured from time 0 on, so the run must not have advanced.
   void MeasureCurrent(std::unique_ptr<CurrentMeter> current) { current_ = std::move(current); }
   const CurrentMeter* current() const { return current_.get(); }  // or null
 
@@ -69,7 +70,7 @@ class GasMeter {
     SetPiston(exchange.time, exchange.piston, exchange.piston_energy);
   }
 
-  // A piston has left a thermal wall.
+  // A piston has this energy from `time` on.
   void SetPiston(double time, int64_t piston, double energy) {
     Set(time, energy, bodies_[balls_ + static_cast<size_t>(piston)]);
   }

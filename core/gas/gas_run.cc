@@ -33,7 +33,7 @@ bool AdvanceToward(double time, JumpGas& gas, GasMeter& meter) {
 template <typename Gas>
 class SeparateGases : public GasRun {
  public:
-  // `make` makes a gas from its start, and prepares its meter.
+  // make(start, meter) returns a gas, and prepares its meter.
   template <typename Make>
   SeparateGases(const GasGeometry& geometry, std::vector<GasStart> replicas, const Make& make)
       : GasRun(geometry, replicas) {

@@ -44,7 +44,8 @@ class GasRun {
   // which another run can continue. The jump process has speeds alone.
   virtual GasState StateOf(size_t replica) const = 0;
 
-  // The meter of each replica. The measurements begin at time 0.
+  // The meters in the order of the replicas, valid as long as the run. They measure from time 0, or
+  // from the last call of Begin.
   std::span<GasMeter> meters() { return meters_; }
 
  protected:

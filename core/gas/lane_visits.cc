@@ -222,17 +222,18 @@ class LanesAhead : public FlightsAhead {
                       .piston_goes_right = collision->piston_goes_right};
   }
 
-  // The flights that begin before the ball may stop; paths only grow.
+  // Finds each ball's last flight that begins before the ball may stop. Paths only grow, so its
+  // number is that of the later flights that begin by then.
   void CountFlights() {
     const D d;
-    for (size_t slot = 0; slot < vectors_; ++slot) {
-      const auto until = hn::Load(d, until_ + slot * Width());
+    for (size_t vector = 0; vector < vectors_; ++vector) {
+      const auto until = hn::Load(d, until_ + vector * Width());
       auto begun = hn::Zero(d);
       for (size_t flight = 1; flight <= flights_; ++flight) {
-        const auto path = hn::Load(d, burst_.slot(slot + flight * kVectors).path);
+        const auto path = hn::Load(d, burst_.slot(vector + flight * kVectors).path);
         begun = hn::Add(begun, hn::IfThenElseZero(hn::Le(path, until), hn::Set(d, 1)));
       }
-      hn::Store(begun, d, begun_ + slot * Width());
+      hn::Store(begun, d, begun_ + vector * Width());
     }
   }
 
@@ -266,8 +267,8 @@ class LanesAhead : public FlightsAhead {
   LaneBurst<double> burst_;
   PistonWaves<double> pistons_[kVectors][4];  // by direction
   uint32_t visitors_[kVectors];  // lanes whose balls came within reach, as in MayHaveMetPistons
-  // By order: the path length at which the ball may stop, and the number of flights in which it may
-  // still meet a piston for the first time.
+  // By order: the path length at which the ball may stop, the last flight that begins before it,
+  // and the number of flights in which the ball may still meet a piston for the first time.
   HWY_ALIGN double until_[kVectors * kMostLanes<double>];
   HWY_ALIGN double begun_[kVectors * kMostLanes<double>];
   size_t end_[kVectors * kMostLanes<double>];

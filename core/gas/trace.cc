@@ -10,7 +10,7 @@
 namespace ballpiston {
 namespace {
 
-// An orbit of the pair, with the functions of one of a gas. Its events have no energies.
+// An orbit of the pair, with the same functions as GasOrbit. Its events have no energies.
 class PairOrbit {
  public:
   PairOrbit(const PairGeometry& geometry, const PairState& start) : flow_(geometry, start) {}

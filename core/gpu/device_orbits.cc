@@ -15,7 +15,7 @@ namespace {
 // Flights of a lane in a launch, at most: some milliseconds.
 constexpr size_t kMostFlightsInALaunch = 2048;
 
-// Calls of the source's Next between two calls of Pause.
+// The most calls of the source's Next between two calls of Pause.
 constexpr size_t kStartsBetweenLooks = 8192;
 
 // Rounding of a path must not end an orbit that its collision would end in time.
@@ -38,8 +38,8 @@ bool EndsBurst(const FlightProgram& program, FlightReport& report) {
   return report.news == FlightNews::kNone;
 }
 
-// After a failure of the device a run is the source of the lanes: first with the orbits that were
-// in progress, then with those of its own source.
+// If the device fails, the run goes on in the lanes and is their source: it supplies first the
+// orbits in progress, then those of its own source.
 class DeviceRun : public EngineRun, private OrbitSource {
  public:
   DeviceRun(const PairGeometry& geometry, OrbitSource& source, std::unique_ptr<FlightBatch> batch,
@@ -201,7 +201,8 @@ class DeviceRun : public EngineRun, private OrbitSource {
     return number;
   }
 
-  // A ball at rest collides at once. After the exchange it has the piston's speed.
+  // A ball at rest collides, or is lost, at once. After the exchange it has the piston's speed, so
+  // Enter calls itself only once more.
   void Enter(uint32_t number, const OrbitStart& start) {
     OrbitInProgress& entered = orbits_[number];
     entered.start = start;

@@ -12,7 +12,11 @@ namespace {
 
 using ByGroup = std::array<double, kGroups>;
 
-// Q_gh, and what it would be on average for independent samples.
+// The sample variance between groups of (x - s)^2/(s (1 - s)), s = 1/G, where x is 1 in one group,
+// which has a sample or an orbit, and 0 in the others.
+constexpr double kOwn = kGroups * (kGroups - 2.0) * (kGroups - 2) / ((kGroups - 1) * (kGroups - 1));
+
+// Q_gh, and its mean and scatter for independent samples.
 class GroupProducts {
  public:
   GroupProducts(std::span<const Histogram> groups, size_t rows) : groups_(groups) {
@@ -30,11 +34,10 @@ class GroupProducts {
   // cell and -1/n_r for two of one row. Its squares sum to freedom(), but a sample with itself
   // hardly scatters, with 2/G of the scatter of others.
   double freedom_of_pairs() const { return freedom_ - (1 - 2.0 / kGroups) * of_themselves_; }
-  // The part of the variance of Q_gg/(s (1 - s)), s the group's share, that comes from each
-  // independent sample with itself.
+  // The part of the sample variance between groups of Q_gg/(s (1 - s)), s a group's share, that
+  // comes from each independent sample with itself.
   double ScatterOfThemselves() const {
-    return std::pow(kGroups - 2.0, 2) / (kGroups - 1) *
-           std::max(of_themselves_ - freedom_ * freedom_ / samples_, 0.0);
+    return kOwn * std::max(of_themselves_ - freedom_ * freedom_ / samples_, 0.0);
   }
   double Of(size_t g, size_t h) const { return products_[g][h]; }
   double Share(size_t g) const { return shares_[g]; }
@@ -116,7 +119,7 @@ GroupScatter ScatterOfGroups(std::span<const Histogram> groups, size_t rows) {
   const double of_pairs = scatter / (pairs_of_shares * products.freedom_of_pairs());
   const double of_a_group =
       (*own.Variance() - products.ScatterOfThemselves()) / (2 * products.freedom_of_pairs());
-  const double of_orbits = std::max(of_a_group - of_pairs, 0.0) / kGroups;
+  const double of_orbits = std::max(of_a_group - of_pairs, 0.0) / kOwn;
   return {on_diagonal / (2 * pairs_of_shares * products.freedom()), of_pairs, of_orbits};
 }
 

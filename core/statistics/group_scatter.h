@@ -6,9 +6,8 @@
 //   Q_gh = sum over cells of d_gc d_hc/n_c - sum over rows of d_gr d_hr/n_r.
 // Q_gg is a chi-squared of group g, whose mean shows how large the counts' variances are. The
 // scatter of Q_gh, g other than h, also shows how the counts of different cells are correlated: it
-// is that of the chi-squared of all samples, if these are many small parts. Some orbits stay in a
-// few cells: each adds a large part of its own, which only Q_gg shows. Properties, each with a test
-// of its name:
+// is that of the chi-squared of all samples if no orbit contributes much by itself. An orbit that
+// stays in a few cells does, which only Q_gg shows. Properties, each with a test of its name:
 //   1. IndependentSamplesScatterAsExpected.  2. RepeatedSamplesCountOnce.
 //   3. OrbitsThatStayInACellAddTheirOwnScatter.
 #pragma once
@@ -30,8 +29,8 @@ inline constexpr double kFreedomOfPairs = kGroups * (kGroups - 3) / 2.0;
 // Relative to independent samples.
 struct GroupScatter {
   double chi_squared = 1;  // the mean of a chi-squared
-  double of_pairs = 1;     // its variance, as far as pairs of samples of different orbits show it
-  double of_orbits = 0;    // what orbits that stay in a few cells add to this variance
+  double of_pairs = 1;     // its variance from pairs of samples in different groups
+  double of_orbits = 0;    // its additional variance from orbits that stay in a few cells
 };
 
 // Whether every group has samples. Without them the scatter is unknown.

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <vector>
 
 #include "core/arithmetic/elementary_functions.h"
+#include "core/statistics/cumulants.h"
 #include "core/statistics/group_scatter.h"
-#include "core/statistics/moments.h"
 
 namespace ballpiston {
 namespace {
@@ -204,7 +205,7 @@ double Total(std::span<const uint64_t> counts) {
   return total;
 }
 
-// Of each row to the uniform law.
+// The divergence of each row's law from the uniform law, averaged over samples.
 double ValueOfRows(std::span<const uint64_t> counts, size_t rows) {
   const size_t cells = counts.size() / rows;
   double information = 0;
@@ -238,16 +239,18 @@ KlDivergence OfRows(std::span<const uint64_t> counts, size_t rows) {
   return all;
 }
 
-// The jackknife of groups. It counts pairs of samples of different groups twice, as in Sums.
+// The variance by a jackknife over groups. As in Sums, it counts pairs of samples of different
+// groups twice.
 double JackknifeVariance(std::span<const Histogram> groups, std::span<const uint64_t> counts,
                          size_t rows) {
-  Moments values;
-  std::vector<uint64_t> others(counts.size());
-  for (const Histogram& group : groups) {
-    std::ranges::transform(counts, group.counts, others.begin(), std::minus<>());
-    values.Add(ValueOfRows(others, rows));
-  }
-  return *values.Variance() * Square(kGroups - 1) / kGroups;
+  const auto without = [&](size_t group) {
+    std::vector<uint64_t> others(counts.begin(), counts.end());
+    if (group < kGroups) {
+      std::ranges::transform(counts, groups[group].counts, others.begin(), std::minus<>());
+    }
+    return ValueOfRows(others, rows);
+  };
+  return Square(Jackknife(kGroups, without).error);
 }
 
 }  // namespace
@@ -273,6 +276,7 @@ KlDivergence DivergenceWithinRows(std::span<const Histogram> groups, size_t rows
   const double noise = of_pairs + scatter.of_orbits * Square(kl.noise_error);
   kl.noise_floor *= scatter.chi_squared;
   kl.noise_error = std::sqrt(noise);
+  // The variance is the jackknife less the pairs. What exceeds the noise is from unequal laws.
   const double jackknife = JackknifeVariance(groups, counts, rows);
   const double beyond = BeyondNoise(kl) * std::max(jackknife - of_pairs - noise, 0.0);
   kl.standard_error = std::sqrt(noise + beyond);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <cmath>
 #include <optional>
 
 #include "core/billiard/orbits.h"
@@ -28,14 +29,16 @@ EnsembleSpec SpecOf(const ExperimentKind& experiment, Model model, double delta)
   return spec;
 }
 
-// Counts the orbits that an engine starts before the first one ends.
+// Counts the orbits that an engine starts before the first one ends: its lanes.
 class FirstOrbits : public OrbitSource {
  public:
   explicit FirstOrbits(const PairGeometry& geometry) : geometry_(geometry) {}
-  // The piston rests out of the ball's reach.
+  // The ball flies away from a piston at rest, so no orbit ends in the first flights.
   std::optional<OrbitStart> Next() override {
     if (one_has_ended_) return std::nullopt;
-    return OrbitStart{count_++, {.ball_speed = 1, .piston = geometry_.tip()}};
+    return OrbitStart{
+        count_++,
+        {.direction = {-M_SQRT1_2, -M_SQRT1_2}, .ball_speed = 1, .piston = geometry_.tip()}};
   }
   AfterCollision Collide(uint64_t, const Collision&) override {
     one_has_ended_ = true;

@@ -6,7 +6,7 @@
 // a test of its name: 1. KeepsItsEnergy, to rounding.
 // 2. ABallThatHasPassedAPistonExchanges, in each direction. 3. AllMethodsAgree, with thermal walls.
 //
-// One object is one gas; not for sharing between threads.
+// One object is one gas. Not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@
 
 namespace ballpiston {
 
-// The same interface as ReferenceGas.
+// NextTime, Step, BallAt and PistonAt are as in ReferenceGas.
 class FixedStepGas {
  public:
   // time_step > 0.

@@ -1,4 +1,4 @@
-// Orbits of an engine that have numbers from 0.
+// A source of orbits that are numbered from 0.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@ class NumberedOrbits : public OrbitSource {
  public:
   virtual PairState Start(uint64_t orbit) = 0;
 
-  // Runs orbits 0 ... count - 1 to their ends. Returns false if Pause was true before.
+  // Runs orbits 0 ... count - 1 to their ends. Returns false if Pause stopped the run before
+  // that.
   bool Run(Engine engine, const PairGeometry& geometry, uint64_t count) {
     next_ = 0;
     count_ = count;

@@ -160,10 +160,11 @@ TEST(Orbits, TimeLimitChangesNothingWithinIt) {
   }
 }
 
-// Given pairs, each once. Gives up after so many looks that a run that can end has ended.
-class GivesUp : public NumberedOrbits {
+// Starts each of the given pairs once. Stops the run after kMostLooks calls of Pause; a run that
+// can end needs fewer.
+class GivenPairs : public NumberedOrbits {
  public:
-  explicit GivesUp(std::vector<PairState> pairs) : pairs_(std::move(pairs)) {}
+  explicit GivenPairs(std::vector<PairState> pairs) : pairs_(std::move(pairs)) {}
   PairState Start(uint64_t orbit) override { return pairs_[orbit]; }
   AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
     EXPECT_TRUE(ends_.emplace(orbit, collision).second);
@@ -227,7 +228,7 @@ TEST(Orbits, ThePistonMeetsABallAtRestAtItsPlace) {
     std::vector<PairState> pairs;
     for (const AtRest& ball : balls) pairs.push_back(ball.pair);
     for (const Engine engine : kEngines) {
-      GivesUp source(pairs);
+      GivenPairs source(pairs);
       ASSERT_TRUE(source.Run(engine, geometry, pairs.size()));
       ASSERT_EQ(source.ends().size(), pairs.size());
       for (const auto& [orbit, collision] : source.ends()) {
@@ -258,7 +259,7 @@ TEST(Orbits, OrbitsThatCannotEndAreLost) {
       {.position = {0, 0}, .ball_speed = 0, .piston = 0.5, .piston_velocity = 1},
       {.position = {-0.9, 0}, .direction = {-1, 0}, .ball_speed = 1, .piston = 0.5}};
   for (const Engine engine : kEngines) {
-    GivesUp source(pairs);
+    GivenPairs source(pairs);
     ASSERT_TRUE(source.Run(engine, geometry, pairs.size()));
     ASSERT_EQ(source.ends().size(), pairs.size());
     for (const auto& [orbit, collision] : source.ends()) {
@@ -268,7 +269,8 @@ TEST(Orbits, OrbitsThatCannotEndAreLost) {
   }
 }
 
-// The largest number of starts between two looks, of orbits that end after few flights or none.
+// The largest number of starts between two calls of Pause, of orbits that end after few flights or
+// none.
 class CountedStarts : public OrbitSource {
  public:
   explicit CountedStarts(const PairState& pair) : pair_(pair) {}

@@ -81,7 +81,7 @@ TEST(TangentPlane, TheReflectionOfAnExchangeIsThatOfSixComponents) {
   EXPECT_GT(compared, 50u);
 }
 
-// Two vectors after a wait with this map, and after a second wait of the same kind.
+// The growth of the two vectors over two equal waits with this map.
 std::array<double, 2> GrowthWithExponent(double exponent) {
   const Collision collision = {
       .state = {.direction = {0.6, 0.8}, .ball_speed = 0.8, .piston_velocity = -0.6},

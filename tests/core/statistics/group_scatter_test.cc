@@ -42,8 +42,8 @@ TEST(GroupScatter, IndependentSamplesScatterAsExpected) {
 // The counts' variances are three times as large, and so is a chi-squared.
 TEST(GroupScatter, RepeatedSamplesCountOnce) { ExpectScatter(10, 3, 3, 9); }
 
-// One orbit in 150 stays in one cell. The variance of the chi-squared of all samples is known from
-// 300 of them to about 10 %. Pairs alone give less than half of it.
+// On average one orbit in 150 stays in one cell. 300 repetitions measure the variance of the
+// chi-squared to about 10 %. The pairs alone account for less than half of it.
 TEST(GroupScatter, OrbitsThatStayInACellAddTheirOwnScatter) {
   constexpr int kOrbits = 300, kSamples = 300;
   Moments chi_squared, stated, of_pairs;
