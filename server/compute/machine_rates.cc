@@ -1,8 +1,8 @@
 // Measures the sampling rates of this machine.
 #include <algorithm>
 #include <cassert>
-#include <cstdint>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "core/billiard/orbits.h"
