@@ -31,9 +31,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // The lanes fly in bursts of some flights each (lane_burst-inl.h). After a burst the engine
 // examines the flights that began or ended in the piston's reach, reports the collisions that it
-// finds to the source, and gives the lanes their next orbits. The flights need no branches.
-// After a collision the ball may be anywhere in the cell (FrameOfBall); the lanes accept such a
-// state.
+// finds to the source, and gives the lanes their next orbits. The flights need no branches. After a
+// collision the ball may be anywhere in the cell (FrameOfBall); the lanes accept such a state.
 //
 // An orbit enters at the beginning of a burst, and every burst has the same number of flights. So
 // the rounding at the end of a burst occurs at the same flights of the orbit in every lane.
