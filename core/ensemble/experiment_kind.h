@@ -1,5 +1,5 @@
 // Each experiment has one row, which describes it to the rest of the program. The row stands in the
-// experiment's file, and experiment/all_experiments.cc lists all rows. Validation, plans, ladder,
+// experiment's file, and experiment/all_experiments.h lists all rows. Validation, plans, ladder,
 // predictions and random streams read rows.
 #pragma once
 
@@ -146,7 +146,7 @@ const AimedEstimate& AimOf(const EnsembleSpec& spec);
 Forecast ForecastOf(const EnsembleSpec& spec, const PointParameters& point);
 Scatter ScatterOf(const EnsembleSpec& spec, const PointParameters& point);
 
-// In the order of their numbers; experiment/all_experiments.cc.
+// In the order of their numbers; experiment/all_experiments.h.
 std::span<const ExperimentKind* const> AllExperiments();
 // Null if no experiment has this number.
 const ExperimentKind* FindExperiment(uint64_t number);

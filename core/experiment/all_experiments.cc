@@ -2,11 +2,6 @@
 
 namespace ballpiston {
 
-std::span<const ExperimentKind* const> AllExperiments() {
-  static constexpr const ExperimentKind* kAll[] = {
-      &kEquilibrium,    &kConditionalMeanFreeTime, &kFirstHit, &kEnergyRelaxation, &kMarkovProperty,
-      &kGasEquilibrium, &kGasConduction,           &kLyapunov, &kGasLyapunov};
-  return kAll;
-}
+std::span<const ExperimentKind* const> AllExperiments() { return kAllExperiments; }
 
 }  // namespace ballpiston

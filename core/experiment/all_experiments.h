@@ -1,5 +1,4 @@
-// The rows of all experiments. Each row is defined in its experiment's file; AllExperiments of
-// ensemble/experiment_kind.h lists them.
+// The rows of all experiments. Each row is defined in its experiment's file.
 #pragma once
 
 #include "core/ensemble/experiment_kind.h"
@@ -15,5 +14,10 @@ extern const ExperimentKind kGasEquilibrium;
 extern const ExperimentKind kGasConduction;
 extern const ExperimentKind kLyapunov;
 extern const ExperimentKind kGasLyapunov;
+
+// What AllExperiments of ensemble/experiment_kind.h returns.
+inline constexpr const ExperimentKind* kAllExperiments[] = {
+    &kEquilibrium,    &kConditionalMeanFreeTime, &kFirstHit, &kEnergyRelaxation, &kMarkovProperty,
+    &kGasEquilibrium, &kGasConduction,           &kLyapunov, &kGasLyapunov};
 
 }  // namespace ballpiston

@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import fcntl
 import json
+import math
 import os
 import random
 import re
@@ -38,7 +39,7 @@ TESTS = {
     "client": ["client_test", "interrupts_test"],
 }
 PROGRAMS = {"core": [], "server": ["ballpistond"], "client": ["ballpiston"]}
-SHORTEST_HANG = 600.0  # seconds
+SHORTEST_HANG = 600.0  # seconds in which a test program that waits makes no progress
 CAUGHT, MISSED, GONE, INVALID = "caught", "missed", "gone", "does not compile"
 MUTANT = ("file", "line", "text", "column", "operator", "before", "after")
 
@@ -113,13 +114,17 @@ def builds(folder: str) -> bool:
         )
 
 
-def first_failure(build: Path, folder: str, jobs: int, seconds: float) -> str | None:
-    """The first test that fails, or the part of a program that crashes or runs for so long. A part
-    that fails runs once more, and only the second time counts, because a busy machine can make a
-    test fail too."""
+def first_failure(build: Path, folder: str, jobs: int, usual: float) -> str | None:
+    """The first test that fails, or the part of a program that crashes or hangs. `usual` is the
+    time of all parts in seconds. A part that waits hangs after ten times that, one that computes
+    after three times that of processor time, which hardly depends on other programs. A part that
+    fails runs once more, and only the second time counts, because a busy machine can make a test
+    fail too."""
     names = "|".join(TESTS[folder])
-    command = ["setpriv", "--pdeathsig", "TERM", "ctest", "--test-dir", str(build), "-R", rf"^({names})\.", "-j", str(jobs)]
-    command += ["--timeout", f"{seconds:.0f}", "--stop-on-failure", "--repeat", "until-pass:2"]
+    command = ["setpriv", "--pdeathsig", "TERM", "prlimit", f"--cpu={math.ceil(3 * usual)}:"]
+    command += ["ctest", "--test-dir", str(build), "-R", rf"^({names})\.", "-j", str(jobs)]
+    command += ["--timeout", f"{max(SHORTEST_HANG, 10 * usual):.0f}", "--stop-on-failure"]
+    command += ["--repeat", "until-pass:2"]
     temporary = tempfile.mkdtemp(prefix="mutation-")  # a test that crashes leaves its files there
     os.chmod(temporary, 0o1777)  # like /tmp: a test is a server of several users
     environment = {**os.environ, "GTEST_FAIL_FAST": "1", "TMPDIR": temporary}
@@ -136,14 +141,15 @@ def first_failure(build: Path, folder: str, jobs: int, seconds: float) -> str | 
 def failure_in(output: str) -> str:
     """The test that failed twice, by the output of ctest."""
     tests = re.findall(r"^\[  FAILED  \] ([\w/]+\.[\w/]+)", output, re.MULTILINE)
-    parts = re.findall(r"Test +#\d+: (\S+) \.*\*\*\*(\S.*?) +[\d.]+ sec", output)
+    parts = re.findall(r"Test +#\d+: (\S+) \.*(\w*\*\*\*\S.*?) +[\d.]+ sec", output)
     if not parts:
         return output.strip().split("\n")[-1]
     part, reason = parts[-1]
+    reason = reason.replace("***", " ").strip()
     return str(tests[-1]) if tests and reason == "Failed" else f"{part}: {reason}"
 
 
-def try_mutant(mutant: Record, jobs: int, limit: float) -> Record:
+def try_mutant(mutant: Record, jobs: int, usual: float) -> Record:
     file = TREE / mutant["file"]
     original = file.read_text() if file.exists() else ""
     text = mutated(mutant, original)
@@ -153,7 +159,7 @@ def try_mutant(mutant: Record, jobs: int, limit: float) -> Record:
     try:
         if not builds(folder_of(mutant)):
             return {**mutant, "result": INVALID}
-        by = first_failure(TREE / "build/release", folder_of(mutant), jobs, limit)
+        by = first_failure(TREE / "build/release", folder_of(mutant), jobs, usual)
         return {**mutant, "result": CAUGHT if by else MISSED, "by": by}
     finally:
         file.write_text(original)
@@ -165,7 +171,7 @@ def unmutated_seconds(folder: str, jobs: int) -> float:
     if not builds(folder):
         raise SystemExit(f"{folder} does not build: see {FOLDER}/build.log")
     begin = time.monotonic()
-    if by := first_failure(TREE / "build/release", folder, jobs, 10 * SHORTEST_HANG):
+    if by := first_failure(TREE / "build/release", folder, jobs, SHORTEST_HANG):
         raise SystemExit(f"{by} fails without a mutant: see {FOLDER}/failure.log")
     return time.monotonic() - begin
 
@@ -255,7 +261,7 @@ def main() -> int:
 def try_all(drawn: Iterator[Record], count: int, jobs: int, path: Path) -> list[Record]:
     """Until so many compiled. Mutants of an earlier, interrupted run are not tried again."""
     known = {key(record): record for record in read(path)}
-    limit_of = cache(lambda folder: max(SHORTEST_HANG, 10 * unmutated_seconds(folder, jobs)))
+    usual_of = cache(lambda folder: unmutated_seconds(folder, jobs))
     tried: dict[tuple[Any, ...], Record] = {}
     while len(compiled(tried.values())) < count:
         mutant = next(drawn, None)
@@ -266,7 +272,7 @@ def try_all(drawn: Iterator[Record], count: int, jobs: int, path: Path) -> list[
         record = known.get(key(mutant))
         if not record:
             mutant = {field: mutant[field] for field in MUTANT}
-            record = try_mutant(mutant, jobs, limit_of(folder_of(mutant)))
+            record = try_mutant(mutant, jobs, usual_of(folder_of(mutant)))
             with path.open("a") as file:
                 file.write(json.dumps(record) + "\n")
         tried[key(mutant)] = record

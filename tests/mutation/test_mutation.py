@@ -95,13 +95,13 @@ class RunsTest(unittest.TestCase):
         self.folder = Path(temporary.name)
         self.enterContext(mock.patch.object(mutation, "FOLDER", self.folder))
 
-    def first_failure(self, script: str, parts: int = 2, seconds: float = 3600) -> str | None:
+    def first_failure(self, script: str, parts: int = 2, usual: float = 100) -> str | None:
         program = self.folder / "program"
         program.write_text(f"#!/bin/sh\nfolder={self.folder}\n{script}")
         program.chmod(stat.S_IRWXU)
         tests = [f"add_test(client_test.{part} {program} {part})\n" for part in range(1, parts + 1)]
         (self.folder / "CTestTestfile.cmake").write_text("".join(tests))
-        return mutation.first_failure(self.folder, "client", jobs=2, seconds=seconds)
+        return mutation.first_failure(self.folder, "client", jobs=2, usual=usual)
 
     def test_a_part_that_fails_once_is_no_failure(self) -> None:
         self.assertIsNone(self.first_failure('mkdir "$folder/$1" 2>/dev/null && exit 1\nexit 0'))
@@ -114,8 +114,13 @@ class RunsTest(unittest.TestCase):
     def test_crashes_and_hangs_are_named_by_their_part(self) -> None:
         crash = '[ "$1" = 1 ] || exit 0\nkill -SEGV $$'
         self.assertEqual(self.first_failure(crash), "client_test.1: Exception: SegFault")
-        hang = self.first_failure("exec sleep 1000", parts=1, seconds=1)
+        with mock.patch.object(mutation, "SHORTEST_HANG", 1):
+            hang = self.first_failure("exec sleep 1000", parts=1, usual=0.1)
         self.assertEqual(hang, "client_test.1: Timeout")
+
+    def test_a_part_that_computes_without_end_is_stopped_by_its_processor_time(self) -> None:
+        loop = self.first_failure("while :; do :; done", parts=1, usual=0.4)
+        self.assertEqual(loop, "client_test.1: SIGXCPU Exception:")
 
     def test_a_run_goes_on_after_the_last_whole_line(self) -> None:
         path = self.folder / "results"
