@@ -141,7 +141,7 @@ def first_failure(build: Path, folder: str, jobs: int, usual: float) -> str | No
 def failure_in(output: str) -> str:
     """The test that failed twice, by the output of ctest."""
     tests = re.findall(r"^\[  FAILED  \] ([\w/]+\.[\w/]+)", output, re.MULTILINE)
-    parts = re.findall(r"Test +#\d+: (\S+) \.*(\w*\*\*\*\S.*?) +[\d.]+ sec", output)
+    parts = re.findall(r"Test +#\d+: (\S+) \.*([\w ]*\*\*\*\S.*?) +[\d.]+ sec", output)
     if not parts:
         return output.strip().split("\n")[-1]
     part, reason = parts[-1]

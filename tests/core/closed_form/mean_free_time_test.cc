@@ -2,6 +2,7 @@
 
 #include "tests/core/preamble.h"
 #include "tools/flows/printed_formulas.h"
+#include "tools/flows/quad_precision.h"
 
 namespace ballpiston {
 namespace {

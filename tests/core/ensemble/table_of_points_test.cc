@@ -1,6 +1,7 @@
 // A grid whose points stand in a table.
 #include "core/ensemble/ensemble_spec.h"
 #include "core/experiment/all_experiments.h"
+#include "core/gas/gas_shape.h"
 #include "core/model_choice/ladder.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
