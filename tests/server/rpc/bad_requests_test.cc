@@ -110,8 +110,10 @@ std::vector<BadRequest> BadRequests() {
       {pairs, Times(101, pair), {"rho"}},  // too many pairs
       {pairs, Times(100, "rho: 0.53 ") + "delta: 0.1 " + Times(201, "epsilon: 0.1 "), {"epsilon"}},
       {pairs,
-       Times(100, "rho: 0.53 ") + "delta: 0.1 " + Times(126, "temperature: 1 "),
-       {"temperature"}},
+       pair + Times(7, "epsilon: 0.1 ") + "outgoing_epsilon: 0.1 " +
+           Times(12'494, "temperature: 1 "),
+       {"temperature"},
+       "100001 values"},
       {pairs, pair + "delta: 1e-300", {"delta[1]"}},  // beyond the range of double
       {pairs, "rho: 0.53 delta: 1e-130 temperature: 1e-120", {"delta[0]"}},  // the rate underflows
       {trace, "cells: '2x' temperature: 0", {"rho", "delta", "cells", "temperature", "events"}},
