@@ -33,7 +33,7 @@ LaneFrame FrameOf(const FlightBall& ball) {
 bool EndsBurst(const FlightProgram& program, FlightReport& report) {
   FlightLane& lane = report.lane;
   Fly(program, lane.ball);
-  lane.in_reach = IsInReach(program, lane.ball) ? kSign : 0;
+  lane.in_reach = InReach(program, lane.ball);
   report.news = FlyBurst(program, lane, report.flight + 1, report.flight, report.path_after);
   return report.news == FlightNews::kNone;
 }

@@ -6,6 +6,7 @@
 // operations.
 //
 // A sign of the compass is in the top bit of a word: set for -1. The other bits have no meaning.
+// Tests are signs too, so that integer units compute them: a GPU has fewer units for doubles.
 #pragma once
 
 #include <bit>
@@ -81,6 +82,8 @@ BALLPISTON_HOST_DEVICE double Negated(double x, uint32_t sign) {
 
 BALLPISTON_HOST_DEVICE bool IsSet(uint32_t sign) { return static_cast<int32_t>(sign) < 0; }
 
+BALLPISTON_HOST_DEVICE double PositivePart(double x) { return IsSet(UpperWord(x)) ? 0.0 : x; }
+
 // ---- a flight ----
 
 // Returns s'^2, as Aim does.
@@ -107,7 +110,7 @@ BALLPISTON_HOST_DEVICE double Fly(const FlightProgram& k, FlightBall& ball) {
   ball.ab ^= ~ahead;
   ball.m ^= mirrored;
 
-  ball.s = std::sqrt(square > 0.0 ? square : 0.0);
+  ball.s = std::sqrt(PositivePart(square));
   const double unit = std::fma(-std::fma(n, n, h2 * h2), k.length_squared, 1.5);
   const double p = std::fma(square, unit, -unit);
   const double r = (next_c * unit) * ball.s;
@@ -115,7 +118,7 @@ BALLPISTON_HOST_DEVICE double Fly(const FlightProgram& k, FlightBall& ball) {
   ball.e = std::fma(-h2, r, -(n * p));
   ball.c = next_c;
   const double length = foot - ball.s;
-  ball.path += length > 0.0 ? length : 0.0;
+  ball.path += PositivePart(length);
   return square;
 }
 
@@ -126,9 +129,9 @@ BALLPISTON_HOST_DEVICE double PlaceOnArc(const FlightBall& ball) {
   return std::fma(ball.c, ball.h, ball.s * ball.e);
 }
 
-// The arc must be at the right tip, and the ball within reach of it.
-BALLPISTON_HOST_DEVICE bool IsInReach(const FlightProgram& k, const FlightBall& ball) {
-  return IsSet(ball.a) && Negated(PlaceOnArc(ball), ~ball.ab) > k.edge;
+// Set if the ball is within the piston's reach: the arc must be at the right tip.
+BALLPISTON_HOST_DEVICE uint32_t InReach(const FlightProgram& k, const FlightBall& ball) {
+  return ball.a & UpperWord(k.edge - Negated(PlaceOnArc(ball), ~ball.ab));
 }
 
 BALLPISTON_HOST_DEVICE double Abscissa(const FlightProgram& k, const FlightBall& ball) {
@@ -169,21 +172,16 @@ BALLPISTON_HOST_DEVICE bool MayHaveMet(const FlightProgram& k, const FlightLane&
 BALLPISTON_HOST_DEVICE FlightNews FlyBurst(const FlightProgram& k, FlightLane& lane, uint32_t first,
                                            uint32_t& flight, double& path_after) {
   FlightBall ball = lane.ball;
-  bool in_reach = IsSet(lane.in_reach);
+  uint32_t in_reach = lane.in_reach;
   for (flight = first; flight < k.flights; ++flight) {
     const FlightBall from = ball;
     const double square = Fly(k, ball);
-    const bool reaches = IsInReach(k, ball);
-    FlightNews news = FlightNews::kNone;
-    if (square < 0.0 && square + k.missed_by_rounding < 0.0) {
-      news = FlightNews::kEscaped;
-    } else if ((in_reach || reaches) && MayHaveMet(k, lane, from, ball)) {
-      news = FlightNews::kMayHaveMet;
-    }
-    if (news != FlightNews::kNone) {
+    const uint32_t reaches = InReach(k, ball);
+    const bool escaped = IsSet(UpperWord(square + k.missed_by_rounding));
+    if (escaped || (IsSet(in_reach | reaches) && MayHaveMet(k, lane, from, ball))) {
       lane.ball = from;
       path_after = ball.path;
-      return news;
+      return escaped ? FlightNews::kEscaped : FlightNews::kMayHaveMet;
     }
     in_reach = reaches;
   }
@@ -192,7 +190,7 @@ BALLPISTON_HOST_DEVICE FlightNews FlyBurst(const FlightProgram& k, FlightLane& l
   lane.path_before += ball.path;
   lane.ball = ball;
   lane.ball.path = 0.0;
-  lane.in_reach = in_reach ? kSign : 0;
+  lane.in_reach = in_reach;
   ++lane.bursts;
   return FlightNews::kNone;
 }
