@@ -39,7 +39,7 @@ TESTS = {
     "client": ["client_test", "interrupts_test"],
 }
 PROGRAMS = {"core": [], "server": ["ballpistond"], "client": ["ballpiston"]}
-SHORTEST_HANG = 600.0  # seconds in which a test program that waits makes no progress
+SHORTEST_HANG = 120.0  # seconds in which a test program that waits makes no progress
 CAUGHT, MISSED, GONE, INVALID = "caught", "missed", "gone", "does not compile"
 MUTANT = ("file", "line", "text", "column", "operator", "before", "after")
 
@@ -116,14 +116,13 @@ def builds(folder: str) -> bool:
 
 def first_failure(build: Path, folder: str, jobs: int, usual: float) -> str | None:
     """The first test that fails, or the part of a program that crashes or hangs. `usual` is the
-    time of all parts in seconds. A part that waits hangs after ten times that, one that computes
-    after three times that of processor time, which hardly depends on other programs. A part that
-    fails runs once more, and only the second time counts, because a busy machine can make a test
-    fail too."""
+    time of all parts in seconds, and the limit of one part is three times that, in all and of a
+    processor. A part that fails runs once more, and only the second time counts, because a busy
+    machine can make a test fail too."""
     names = "|".join(TESTS[folder])
     command = ["setpriv", "--pdeathsig", "TERM", "prlimit", f"--cpu={math.ceil(3 * usual)}:"]
     command += ["ctest", "--test-dir", str(build), "-R", rf"^({names})\.", "-j", str(jobs)]
-    command += ["--timeout", f"{max(SHORTEST_HANG, 10 * usual):.0f}", "--stop-on-failure"]
+    command += ["--timeout", f"{max(SHORTEST_HANG, 3 * usual):.0f}", "--stop-on-failure"]
     command += ["--repeat", "until-pass:2"]
     temporary = tempfile.mkdtemp(prefix="mutation-")  # a test that crashes leaves its files there
     os.chmod(temporary, 0o1777)  # like /tmp: a test is a server of several users
@@ -171,7 +170,7 @@ def unmutated_seconds(folder: str, jobs: int) -> float:
     if not builds(folder):
         raise SystemExit(f"{folder} does not build: see {FOLDER}/build.log")
     begin = time.monotonic()
-    if by := first_failure(TREE / "build/release", folder, jobs, SHORTEST_HANG):
+    if by := first_failure(TREE / "build/release", folder, jobs, 1000):
         raise SystemExit(f"{by} fails without a mutant: see {FOLDER}/failure.log")
     return time.monotonic() - begin
 
