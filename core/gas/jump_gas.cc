@@ -72,12 +72,15 @@ double JumpGas::RatePerSpeed(size_t body) const {
 // Called again from time to time, because `rate_` accumulates rounding errors, and because the
 // fastest bodies become slower.
 void JumpGas::FindRates() {
-  rate_ = kinds_[0].largest = kinds_[1].largest = 0;
+  double rate = 0, largest[2] = {};  // in registers
   for (size_t body = 0; body < speeds_.size(); ++body) {
-    rate_ += RatePerSpeed(body) * speeds_[body];
-    double& largest = kinds_[body < balls_ ? 0 : 1].largest;
-    largest = std::max(largest, speeds_[body]);
+    rate += RatePerSpeed(body) * speeds_[body];
+    double& of_kind = largest[body < balls_ ? 0 : 1];
+    of_kind = std::max(of_kind, speeds_[body]);
   }
+  rate_ = rate;
+  kinds_[0].largest = largest[0];
+  kinds_[1].largest = largest[1];
   changes_ = 0;
   FindPlaces();
 }

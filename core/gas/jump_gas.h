@@ -59,17 +59,18 @@ class JumpGas {
   };
 
   double SpeedAtStart(size_t body, const GasState& start) const;
-  void Exchange(GasMeter& meter);
-  void FindNext();
-  size_t NextAttempt();
-  void DrawAttempts();
-  void ByBall(int64_t ball, uint64_t bits, double cosine);
-  void ByPiston(int64_t piston, uint64_t bits, double cosine);
   double SpeedOfOutermost(int64_t piston) const;
-  double RatePerSpeed(size_t body) const;
-  void SetSpeed(size_t body, double speed);
+  void DrawAttempts();
   void FindRates();
   void FindPlaces();
+  // Inline, which saves 8 % of the time of an exchange. FindNext is called at two places.
+  inline void Exchange(GasMeter& meter);
+  [[gnu::always_inline]] inline void FindNext();
+  inline size_t NextAttempt();
+  inline void ByBall(int64_t ball, uint64_t bits, double cosine);
+  inline void ByPiston(int64_t piston, uint64_t bits, double cosine);
+  inline double RatePerSpeed(size_t body) const;
+  inline void SetSpeed(size_t body, double speed);
 
   GasGeometry geometry_;
   double density_;
