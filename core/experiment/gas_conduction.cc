@@ -52,6 +52,9 @@ namespace {
 constexpr uint64_t kWarmUp = 2;
 constexpr size_t kChargeWindow = 8;
 
+// The states of all groups are one value of the store, which has at most 10^9 bytes.
+constexpr double kMostBytesOfStates = 0.9e9;
+
 // At most 128 trajectories, so that a quick question ends quickly. A large gas has fewer, because
 // each has to warm up.
 constexpr uint64_t kMostTrajectories = 128;
@@ -102,6 +105,12 @@ struct SteadyTimes {
   double stretch = 0;      // at mean temperature 1
 };
 
+// Of a trajectory of a billiard; those of the jump process are smaller.
+double StateBytes(const GasGeometry& geometry) {
+  return 8 * (4 * static_cast<double>(geometry.balls()) +
+              2 * static_cast<double>(geometry.pistons()));
+}
+
 // A stretch is half a relaxation time, or a part of it if the stretches of a group would take more
 // than about a minute.
 SteadyTimes TimesOfConduction(Model model, const GasGeometry& geometry, double cold) {
@@ -109,6 +118,8 @@ SteadyTimes TimesOfConduction(Model model, const GasGeometry& geometry, double c
   constexpr uint64_t kMostStretches = uint64_t{1} << 40;  // more take longer than any machine lasts
   SteadyTimes times = {.stretch = RelaxationTime(model, geometry, cold) / 2};
   Trajectories& trajectories = times.trajectories;
+  const double bytes = static_cast<double>(trajectories.groups) * StateBytes(geometry);
+  if (model != Model::kMarkov && bytes > kMostBytesOfStates) trajectories.groups /= 2;
   trajectories.each = std::bit_floor(
       std::clamp<uint64_t>(kMostTrajectories / static_cast<uint64_t>(geometry.balls()), 1,
                            kMostTrajectories / trajectories.groups));
@@ -440,7 +451,7 @@ void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& 
 
 // The memory includes three copies of the states of all groups: merged, arriving and being written.
 Forecast ForecastOfGasConduction(Model model, const PointParameters& point) {
-  constexpr double kCopies = 3, kBytesOfACell = 60;
+  constexpr double kCopies = 3, kBytesOfACell = 80;
   const GasGeometry geometry = OpenGasOf(point);
   const SteadyTimes times = TimesAt(model, point);
   SampleWork work = WorkOfReplica(model, geometry, times.stretch);

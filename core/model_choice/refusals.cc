@@ -97,8 +97,10 @@ FieldViolation BelowReach(const EnsembleSpec& spec, double least) {
   absl::string_view other;
   if (IsOfTheLimit(spec.model)) other = ", or model auto or billiard";
   if (spec.precision == Precision::kSingle) other = ", or precision double";
-  const std::string permitted = least < 1 ? absl::StrCat("tolerance >= ", RoundedUp(least))
-                                          : "samples or a budget in place of a tolerance";
+  constexpr double kRoundsToOne = 0.995 / 1.05;
+  const std::string permitted = least < kRoundsToOne
+                                    ? absl::StrCat("tolerance >= ", RoundedUp(least))
+                                    : "samples or a budget in place of a tolerance";
   return {"target.tolerance",
           absl::StrCat("is ", NumberText(*spec.target.tolerance), ", below what model ",
                        Name(spec.model), " can reach; permitted: ", permitted, other)};
@@ -198,13 +200,17 @@ void CheckBudget(const EnsembleSpec& spec, const Machine& machine,
   if (least <= budget) return;
   const double seconds = *spec.target.budget_seconds * least / budget;
   const auto points = static_cast<int64_t>(PointCount(spec));
+  const std::string permitted =
+      1.05 * seconds <= kMaxBudgetSeconds
+          ? absl::StrCat("budget >= ", RoundedUp(seconds), " s")
+          : absl::StrFormat("none, because they take longer than the largest budget, %.0g s",
+                            kMaxBudgetSeconds);
   found.push_back(
       {"target.budget",
        absl::StrFormat("is %s s%s, which ends before the first samples are complete; permitted on "
-                       "this server: budget >= %s s",
+                       "this server: %s",
                        NumberText(*spec.target.budget_seconds),
-                       points == 1 ? "" : absl::StrFormat(" for %d points", points),
-                       RoundedUp(seconds))});
+                       points == 1 ? "" : absl::StrFormat(" for %d points", points), permitted)});
 }
 
 }  // namespace

@@ -113,12 +113,13 @@ void JobBook::StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& check
   active_.StartRun(job, std::move(run));
 }
 
-// The job's present state. If the job was deleted meanwhile, its state when it was found.
+// The job's present state, of which the scheduler is told: a change that was written after the
+// caller's may be told before it. If the job was deleted meanwhile, its state when it was found.
 absl::StatusOr<v1::EnsembleJob> JobBook::Answer(const Principal& caller, const JobRecord& record) {
   absl::StatusOr<FoundJob> found = Find(caller, record.id, Grid::kIncluded);
   if (absl::IsNotFound(found.status())) found = FoundJob{record};
   if (!found.ok()) return found.status();
-  TellScheduler(found->record);  // a change that came before the run was added did not find it
+  TellScheduler(found->record);
   v1::EnsembleJob job = Message(found->record, found->active.get());
   job.set_answered_from_store(record.job.answered_from_store());
   return job;
@@ -151,8 +152,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
   Failpoint("cancel.committed");
   const std::shared_ptr<Job> job = active_.Find(id);
   if (begun && job != nullptr) job->NoteStateChange();
-  TellScheduler(*found);
-  return Get(caller, id);
+  return Answer(caller, *found);
 }
 
 absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
@@ -182,8 +182,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Update(const Principal& caller, const s
     UpdateJob(database, record);
   });
   if (!changed.ok()) return StoreFailure(changed);
-  TellScheduler(record);
-  return Get(caller, id);
+  return Answer(caller, record);
 }
 
 std::vector<v1::PrincipalStatus> JobBook::JobsByPrincipal() {

@@ -20,12 +20,13 @@
 namespace ballpiston::server {
 namespace {
 
-// Bytes of memory; histograms take most of it.
+// Bytes of memory; histograms or the states of groups take most of it.
 size_t BytesHeld(const BlockResult& result) {
   size_t bytes = sizeof(BlockResult);
   for (const Histogram& histogram : result.histograms) {
     bytes += histogram.counts.size() * sizeof(histogram.counts[0]);
   }
+  for (const GroupState& group : result.groups) bytes += group.numbers().size_bytes();
   return bytes;
 }
 

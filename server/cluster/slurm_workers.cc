@@ -218,7 +218,8 @@ void SlurmWorkers::Look() {
   const FolderStatus work = work_();
   const bool has_work = work.waiting_leases + work.taken_leases > 0;
   const Clock::time_point now = SteadyNow();
-  if (now < next_query_ || (!has_work && !may_have_workers_)) return;
+  const bool is_idle = !has_work && !may_have_workers_ && backoff_.count() == 0;
+  if (now < next_query_ || is_idle) return;
   const absl::Status steered = Steer(work);
   backoff_ = steered.ok() ? std::chrono::milliseconds(0)
                           : std::clamp(2 * backoff_, options_.query_interval, kLongestPause);

@@ -177,7 +177,7 @@ void FillPoint(const v1::EvaluatePairsRequest& request, const PairGeometry& geom
 }
 
 bool RatesAreInRange(const v1::PairAnalytics& point) {
-  return std::isfinite(point.tau_ball_piston()) && point.area_ball_piston() > 0 &&
+  return std::isfinite(point.tau_ball_piston()) && std::isnormal(point.area_ball_piston()) &&
          std::all_of(point.canonical().begin(), point.canonical().end(),
                      [](const auto& row) { return std::isnormal(row.static_conductivity()); });
 }
@@ -186,14 +186,17 @@ bool RatesAreInRange(const v1::PairAnalytics& point) {
 Violations Overflows(const v1::EvaluatePairsRequest& request,
                      const v1::EvaluatePairsResponse& response) {
   Violations violations;
-  const int pairs = std::min(request.delta_size(), response.points_size());
-  for (int i = 0; i < pairs; ++i) {  // the pairs of the first rho
-    const v1::PairAnalytics& point = response.points(i);
-    if (RatesAreInRange(point)) continue;
-    violations.push_back(
-        {Element("delta", i), absl::StrCat(NumberText(point.delta()),
-                                           " is too small: the collision rate or its inverse "
-                                           "leaves the range of double")});
+  for (int i = 0; i < request.delta_size(); ++i) {
+    for (int pair = i; pair < response.points_size(); pair += request.delta_size()) {
+      const v1::PairAnalytics& point = response.points(pair);
+      if (RatesAreInRange(point)) continue;
+      violations.push_back(
+          {Element("delta", i),
+           absl::StrCat(NumberText(point.delta()), " is too small at rho = ",
+                        NumberText(point.rho()),
+                        ": the collision rate or its inverse leaves the range of double")});
+      break;
+    }
   }
   return violations;
 }

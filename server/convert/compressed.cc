@@ -55,7 +55,10 @@ absl::StatusOr<std::string> TakeCompressed(absl::string_view& bytes, size_t most
     return absl::OutOfRangeError(
         absl::StrCat("is truncated: it has only ", bytes.size(), " bytes"));
   }
-  if (code != Z_STREAM_END || plain.size() > most) {
+  if (plain.size() > most) {
+    return absl::DataLossError(absl::StrCat("has more than ", most, " bytes when unpacked"));
+  }
+  if (code != Z_STREAM_END) {
     return absl::DataLossError("is corrupted, or is not a file of ballpiston");
   }
   bytes.remove_prefix(bytes.size() - stream.avail_in);

@@ -119,7 +119,7 @@ void MakeColumns(const v1::Grid& message, Grid& grid, Violations& violations) {
         {absl::StrCat("spec.grid.table[", i, "]"),
          absl::StrCat("is ", Shown(message.table(i)), "; permitted: ",
                       absl::StrJoin(kParameters, ", ", NameOfParameter), ", each once")});
-    if (i == kMostListed) return;
+    if (i >= kMostListed) return;
   }
 }
 

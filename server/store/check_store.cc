@@ -33,9 +33,8 @@ constexpr const char* kContradictions[] = {
     "SELECT 'job ' || id || ' finished ' || points_done || ' points and has ' || count(job)"
     " || ' results' FROM jobs LEFT JOIN results ON job = sequence"
     " WHERE expired = 0 AND state >= 4 GROUP BY sequence HAVING count(job) <> points_done",
-    "SELECT 'job ' || id || ' succeeded with ' || count(job) || ' results of ' || points FROM jobs"
-    " LEFT JOIN results ON job = sequence WHERE expired = 0 AND state = 4"
-    " GROUP BY sequence HAVING count(job) <> points",
+    "SELECT 'job ' || id || ' succeeded with ' || points_done || ' results of ' || points"
+    " FROM jobs WHERE expired = 0 AND state = 4 AND points_done <> points",
     "SELECT 'a result without a point: job ' || coalesce(id, job) || ', point ' || point"
     " FROM results LEFT JOIN jobs ON sequence = job"
     " WHERE ((sequence IS NULL OR expired = 1)"
@@ -59,7 +58,7 @@ class StoreCheck {
           &StoreCheck::CheckJobs, &StoreCheck::CheckResults, &StoreCheck::CheckCheckpoints}) {
       (this->*part)();
       const absl::Status status = database_.TakeStatus();
-      if (absl::IsUnavailable(status)) return status;
+      if (IsOfTheDisk(status)) return status;
       // The damage prevents reading this part.
       if (!status.ok()) Found(std::string(status.message()));
     }

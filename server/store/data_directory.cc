@@ -90,8 +90,8 @@ absl::Status MakeDirectories(const std::string& path) {
   }
   // Without this flush a power cut could remove the folder with all acknowledged data in it.
   if (mkdir(path.c_str(), 0700) == 0) return SyncNameOf(path);
-  if (IsDirectory(path)) return absl::OkStatus();
-  return NotWritable(path, errno);
+  const int error = errno;
+  return IsDirectory(path) ? absl::OkStatus() : NotWritable(path, error);
 }
 
 // Whether the folder has a store, is empty, or has only a client's log. Otherwise other users may

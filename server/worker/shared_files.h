@@ -22,7 +22,9 @@
 
 namespace ballpiston::server {
 
-inline constexpr size_t kMaxSharedFile = size_t{64} << 20;  // bytes; a larger file is not read
+// In bytes; a larger file is not read. The states of a gas of 10^6 cells at the start and at the
+// end of a chunk take 150 MB.
+inline constexpr size_t kMaxSharedFile = size_t{256} << 20;
 
 // A changed file has another stamp.
 struct FileStamp {

@@ -256,6 +256,18 @@ TEST(GasConduction, BesideAColdReservoirABilliardWarmsUpLonger) {
   }
 }
 
+// The store keeps the states of all groups in a value of at most 10^9 bytes. A lattice of two rows
+// has three pistons for two balls, and a billiard four numbers for a ball and two for a piston.
+TEST(GasConduction, TheStatesOfALargeGasFitIntoTheStore) {
+  const auto groups = [](Model model, int64_t columns) {
+    const EnsembleSpec spec = SpecBetween(2, 1, {columns, 2, true}, model);
+    return ForecastOf(spec, PointAt(spec, 0)).trajectories->groups;
+  };
+  EXPECT_EQ(groups(Model::kBilliard, 300'000), 16u);
+  EXPECT_EQ(groups(Model::kBilliard, 500'000), 8u);
+  EXPECT_EQ(groups(Model::kMarkov, 500'000), 16u);
+}
+
 // In 30 first answers of 1x2000 cells of the jump process between 1 and 0.2, after one relaxation
 // time, the mean z-score of the pistons' temperature was 0.9 +- 0.2.
 TEST(GasConduction, ALargeGasWarmsUpLonger) {

@@ -322,6 +322,10 @@ TEST(Ladder, ABudgetBelowTheFirstSamplesIsRejectedWithTheLeastBudget) {
   EXPECT_LT(least, 500);
   EXPECT_NEAR(LeastBudget(Asked("equilibrium delta=3e-5,4e-5 budget=0.3 model=billiard")),
               2 * least, 1e-3 * least);
+  const auto found =
+      MachineViolations(Asked("equilibrium delta=1e-9 budget=1e6 model=billiard"), InLanes24());
+  EXPECT_THAT(found, ElementsAre(Field(&FieldViolation::description,
+                                       HasSubstr("none, because they take longer than"))));
 }
 
 // AUTO takes the jump process if the billiard has no samples within the budget.
@@ -451,6 +455,11 @@ TEST(Ladder, AToleranceBelowTheModelsErrorIsRejected) {
     spec.target.tolerance = 1.01 * row.least;
     EXPECT_THAT(AnswerViolations(spec), IsEmpty());
   }
+  // A tolerance of 1 is not permitted.
+  const auto found = AnswerViolations(
+      Asked("energy-relaxation delta=0.1 epsilon=0.11 model=spectrum tolerance=0.999"));
+  EXPECT_THAT(found, ElementsAre(Field(&FieldViolation::description,
+                                       HasSubstr("permitted: samples or a budget"))));
   for (const auto& [question, violations] : std::vector<std::pair<const char*, size_t>>{
            {"equilibrium delta=0.2 model=closed_form tolerance=1e-17", 1},
            {"equilibrium delta=0.2 model=closed_form tolerance=1e-12", 0},

@@ -118,6 +118,10 @@ TEST_F(SlurmWorkersTest, AProblemIsShownUntilItIsGone) {
   slurm_.queries = absl::UnavailableError("squeue: no controller");
   workers.Look();
   EXPECT_EQ(workers.Status().problem, "squeue: no controller");
+  work_ = {};  // without work too
+  slurm_.queries = absl::OkStatus();
+  workers.Look();
+  EXPECT_EQ(workers.Status().problem, "");
 }
 
 TEST_F(SlurmWorkersTest, AFolderThatIsNotReadyGetsNoWorkers) {

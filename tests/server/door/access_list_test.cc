@@ -141,7 +141,7 @@ TEST_F(AccessFile, OnlyARegularFileIsRead) {
               HasSubstr("cannot be opened"));
   ASSERT_EQ(mkfifo(file_.path.c_str(), 0600), 0);  // would wait for a writer
   EXPECT_THAT(std::string(AccessList::Read(file_).status().message()),
-              StrEq("--access-file=" + file_.path + ": is not a regular file"));
+              testing::StrEq("--access-file=" + file_.path + ": is not a regular file"));
   EXPECT_THAT(AccessList::Read({"access-file", folder_.path()}),
               StatusIs(absl::StatusCode::kInvalidArgument));
 }

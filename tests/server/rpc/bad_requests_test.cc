@@ -60,6 +60,11 @@ std::vector<BadRequest> BadRequests() {
        with("grid { " + Times(10'000, "rho: -1 ") + "}"),
        {"spec.grid.rho[1]", kAndMore},
        "left out"},
+      {create,
+       with("grid { " + Times(100, "table: 'x' ") + "table: 'rho' " + Times(100, "table: '' ") +
+            "}"),
+       {"spec.grid.table[0]", kAndMore},
+       "(and 100 more)"},
       {create, hit + "request_id: 'not a uuid'", {"request_id"}},
       {create, hit + "priority: 101", {"priority"}, "-100 to 100"},
       {create, hit + "priority: -101", {"priority"}, "-100 to 100"},
@@ -116,6 +121,11 @@ std::vector<BadRequest> BadRequests() {
        "100001 values"},
       {pairs, pair + "delta: 1e-300", {"delta[1]"}},  // beyond the range of double
       {pairs, "rho: 0.53 delta: 1e-130 temperature: 1e-120", {"delta[0]"}},  // the rate underflows
+      {pairs,
+       "rho: [0.6, 0.5000000000000002] delta: 3e-154",
+       {"delta[0]"},
+       "too small at rho = 0.5"},
+      {pairs, "rho: 0.5000000000000002 delta: 1e-154", {"delta[0]"}},  // few digits remain
       {trace, "cells: '2x' temperature: 0", {"rho", "delta", "cells", "temperature", "events"}},
       {trace,
        "rho: 0.7071067811865475 delta: 1e-17 events: 1",

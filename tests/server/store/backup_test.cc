@@ -73,7 +73,7 @@ TEST_F(BackupTest, EachInconsistencyIsReported) {
       {"UPDATE jobs SET end_time = NULL WHERE sequence = 1", "ended but has no end time"},
       {"UPDATE jobs SET points_done = 1 WHERE sequence = 1", "finished 1 points and has 2 results"},
       {"UPDATE jobs SET points = 3 WHERE sequence = 1", "succeeded with 2 results of 3"},
-      {"DELETE FROM results WHERE job = 1 AND point = 1", "succeeded with 1 results of 2"},
+      {"DELETE FROM results WHERE job = 1 AND point = 1", "finished 2 points and has 1 results"},
       {"UPDATE results SET point = 7 WHERE job = 1 AND point = 1", "a result without a point"},
       {"UPDATE results SET result = x'ff' WHERE job = 1 AND point = 1",
        "the result of job " + finished},

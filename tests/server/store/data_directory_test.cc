@@ -90,6 +90,10 @@ TEST_F(DataFolder, AFileInItsPlaceIsRefused) {
   for (const std::string& path : {path_, path_ + "/below"}) {
     EXPECT_THAT(DataDirectory::Open(path), StatusIs(absl::StatusCode::kPermissionDenied));
   }
+  std::filesystem::remove(path_);
+  std::filesystem::create_symlink("nowhere", path_);  // stat and mkdir fail for different reasons
+  EXPECT_THAT(DataDirectory::Open(path_),
+              StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("File exists")));
 }
 
 TEST_F(DataFolder, AnOpenFolderOfAnotherUserIsRefused) {
