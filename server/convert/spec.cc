@@ -14,6 +14,7 @@
 #include "core/model_choice/ladder.h"
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/message.h"
+#include "google/protobuf/reflection.h"
 #include "google/protobuf/unknown_field_set.h"
 #include "server/convert/deterministic_bytes.h"
 
@@ -172,6 +173,21 @@ void AddUnknownFields(const char* path, const google::protobuf::Message& message
   }
 }
 
+// -0 + 0.0 is 0, and every other number stays.
+void DropSignsOfZeros(v1::EnsembleSpec& message) {
+  if (message.target().has_tolerance()) {
+    message.mutable_target()->set_tolerance(message.target().tolerance() + 0.0);
+  }
+  if (!message.has_grid()) return;
+  v1::Grid& grid = *message.mutable_grid();
+  for (const Parameter* parameter : kParameters) {
+    if (parameter == &kCells) continue;
+    const auto list =
+        grid.GetReflection()->GetMutableRepeatedFieldRef<double>(&grid, FieldOf(grid, *parameter));
+    for (int i = 0; i < list.size(); ++i) list.Set(i, list.Get(i) + 0.0);
+  }
+}
+
 Violations CoreViolations(const EnsembleSpec& spec) {
   Violations found = ballpiston::Violations(spec);
   return found.empty() ? AnswerViolations(spec) : found;
@@ -207,6 +223,7 @@ void AddViolations(std::vector<FieldViolation> found, CheckedSpec& checked) {
 }
 
 void AddDefaults(v1::EnsembleSpec& message) {
+  DropSignsOfZeros(message);
   // The order of the names means nothing.
   if (message.grid().table_size() > 1) std::ranges::sort(*message.mutable_grid()->mutable_table());
   const ExperimentKind* const experiment =

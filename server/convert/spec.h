@@ -23,8 +23,8 @@ CheckedSpec CheckSpec(const v1::EnsembleSpec& message);
 // Adds violations that were found in checked.spec.
 void AddViolations(std::vector<FieldViolation> found, CheckedSpec& checked);
 
-// Writes the experiment's default values into empty lists of the grid, so that jobs, results and
-// hashes have them.
+// Makes equal questions equal messages: writes the experiment's default values into empty lists of
+// the grid, 0 for -0, and the names of a table's columns in order.
 void AddDefaults(v1::EnsembleSpec& message);
 
 // Parses the name of a shape. INVALID_ARGUMENT quotes at most the beginning of the text.

@@ -10,6 +10,7 @@
 #include "client/web/json_call.h"
 #include "google/rpc/status.pb.h"
 #include "server/convert/deterministic_bytes.h"
+#include "server/convert/spec.h"
 #include "server/door/listen_address.h"
 #include "tests/fuzz/fuzz_target.h"
 
@@ -18,15 +19,17 @@ namespace {
 
 // The client's --spec FILE: proto JSON.
 void CheckSpecFile(const std::string& json) {
-  const absl::StatusOr<v1::EnsembleSpec> spec = client::ParseSpec("FILE", json);
+  absl::StatusOr<v1::EnsembleSpec> spec = client::ParseSpec("FILE", json);
   if (!spec.ok()) {
     Require(absl::IsInvalidArgument(spec.status()), "what is wrong is the argument");
     return Require(absl::StartsWith(spec.status().message(), "--spec FILE: "), "the flag is named");
   }
   const std::string printed = client::Json(*spec);
   if (printed == "null") return;  // a budget beyond what JSON has
-  const absl::StatusOr<v1::EnsembleSpec> again = client::ParseSpec("FILE", printed);
+  absl::StatusOr<v1::EnsembleSpec> again = client::ParseSpec("FILE", printed);
   Require(again.ok(), "what is printed can be read");
+  server::AddDefaults(*again);  // which drops the signs of zeros, as the reader does of -0
+  server::AddDefaults(*spec);
   Require(server::DeterministicBytes(*again) == server::DeterministicBytes(*spec),
           "the parsed specification equals the printed one");
 }

@@ -56,22 +56,15 @@ TEST_F(QuestionTest, EachFlagReachesItsField) {
 
 // ---- spec_file.h ----
 
-// A zero has no sign, in any notation.
 TEST(SpecFile, IsProtoJson) {
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec,
                        ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "seed": 7,
-          "grid": {"rho": [0.53], "epsilon": [0.1, -0, -0.0, -.0, -0e5, 0], "cells": ["12", "4x3"],
-                   "temperature": [-0.0, 0.5], "hot": [-0.0, 2], "cold": [-0.0, 1]},
+          "grid": {"rho": [0.53], "epsilon": [0.1, 0], "cells": ["12", "4x3"], "hot": [3, 2]},
           "target": {"samples": "100", "estimate": "conductivity"}})"));
   const auto expected = FromText<v1::EnsembleSpec>(
       "experiment: FIRST_HIT seed: 7 target { samples: 100 estimate: 'conductivity' }"
-      "grid { rho: 0.53 epsilon: [0.1, 0, 0, 0, 0, 0] cells: ['12', '4x3']"
-      "       temperature: [0, 0.5] hot: [0, 2] cold: [0, 1] }");
+      "grid { rho: 0.53 epsilon: [0.1, 0] cells: ['12', '4x3'] hot: [3, 2] }");
   EXPECT_EQ(spec.SerializeAsString(), expected.SerializeAsString()) << spec.DebugString();
-  ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec other,
-                       ParseSpec("s.json", R"({"target": {"tolerance": -0.0}})"));
-  EXPECT_FALSE(std::signbit(other.target().tolerance()));
-  EXPECT_FALSE(other.has_grid());
 }
 
 TEST(SpecFile, NamesTheUnknownField) {

@@ -1,6 +1,7 @@
 #include "server/convert/spec.h"
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/str_replace.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
@@ -101,7 +102,7 @@ TEST(Spec, ATooLongListOfShapesIsNotParsed) {
 
 // ---- defaults and names ----
 
-TEST(Spec, DefaultValuesAreWrittenIntoEmptyLists) {
+TEST(Spec, EmptyListsGetDefaultValuesAndZerosLoseTheirSigns) {
   const auto with_defaults = [](const std::string& text) {
     v1::EnsembleSpec spec = SpecOfText(text);
     AddDefaults(spec);
@@ -111,6 +112,9 @@ TEST(Spec, DefaultValuesAreWrittenIntoEmptyLists) {
   for (const std::string& text : {kGas + "grid { temperature: 2 }", kHit}) {
     EXPECT_EQ(with_defaults(text), SpecOfText(text).ShortDebugString());
   }
+  const std::string zeros = "target { tolerance: 0 } grid { rho: 0.53 epsilon: [0, 0.1] hot: 0 }";
+  EXPECT_EQ(with_defaults(absl::StrReplaceAll(zeros, {{" 0 ", " -0.0 "}, {"[0", "[-0.0"}})),
+            SpecOfText(zeros).ShortDebugString());
 }
 
 // Each experiment with every model that answers it, and no other.
