@@ -12,7 +12,7 @@ from typing import Any
 from ballpiston.async_watch import Update, watch_updates
 from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
-from ballpiston.errors import Error, ResultsExpired, Unavailable
+from ballpiston.errors import Error, NotFound, ResultsExpired
 from ballpiston.fields import value_of
 from ballpiston.progress import Progress, fraction_of, progress_on_screen
 from ballpiston.result import Result
@@ -165,6 +165,7 @@ class Job:
             JobFailed: the job failed; the exception says why.
             JobCancelled: somebody cancelled it.
             Unavailable: the server did not answer for two minutes. The job goes on.
+            ResourceExhausted: the server was busy for two minutes. The job goes on.
         """
         screen = progress_on_screen(progress)
         if self.answered_from_store and screen.is_visible:
@@ -174,8 +175,9 @@ class Job:
         except KeyboardInterrupt:
             print(_farewell(self.name), file=sys.stderr)
             raise
-        except Unavailable as error:
-            error.args = (f"{error}\n{_farewell(self.name)}",)
+        except Error as error:
+            if not isinstance(error, NotFound):
+                error.args = (f"{error}\n{_farewell(self.name)}",)
             raise
         self._raise_unless_succeeded()
         return self.result()
