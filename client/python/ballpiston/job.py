@@ -250,9 +250,13 @@ class Job:
             ResultsExpired: the server keeps only the specification:
                 `client.run(job.specification)` computes the same results again.
         """
+        return self.result_in(ensemble_pb2.ListResultsRequest.FULL)
+
+    def result_in(self, view: Any) -> Result:
+        """`result` in a view of the protocol: BASIC has no histograms or curves."""
         self.refresh()
         self.message.answered_from_store = self._is_from_store
-        request = ensemble_pb2.ListResultsRequest(parent=self.name, page_size=_PAGE)
+        request = ensemble_pb2.ListResultsRequest(parent=self.name, page_size=_PAGE, view=view)
         points: list[Any] = []
         while True:
             page = self._call(request)
