@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from conftest import FIRST_HITS, Home
 from google.protobuf import json_format
 
 import ballpiston
+from ballpiston.document import write_atomically
 
 
 def test_a_result_is_equal_after_it_was_saved_and_loaded(
@@ -150,6 +152,21 @@ def test_the_end_of_the_name_decides_the_format(
     with pytest.raises(ValueError, match=".json or .npz"):
         first_hits.save(tmp_path / "saved.csv")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_links_permissions_and_pipes_stay(tmp_path: Path) -> None:
+    target, link, pipe = (tmp_path / name for name in ("target", "link", "pipe"))
+    target.touch(0o640)
+    link.symlink_to("target")
+    write_atomically(link, b"text")
+    assert link.is_symlink() and target.read_bytes() == b"text"
+    assert target.stat().st_mode & 0o777 == 0o640
+
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    write_atomically(pipe, b"text")
+    assert os.read(reader, 9) == b"text" and sorted(tmp_path.iterdir()) == [link, pipe, target]
+    os.close(reader)
 
 
 def test_a_result_of_an_unfinished_job_has_its_finished_points(
