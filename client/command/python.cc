@@ -64,14 +64,16 @@ void SetEnvironment(const Options& options) {
   set("BALLPISTON_PROGRESS", WordOf(StyleOf(options), kProgressStyles));
 }
 
-}  // namespace
-
+// The command that runs the interpreter with these arguments. Adds the package to PYTHONPATH of
+// this process, which the interpreter inherits.
 std::vector<std::string> PythonCommand(const std::vector<std::string>& arguments) {
   static const int kOnce [[maybe_unused]] = setenv("PYTHONPATH", PythonPath().c_str(), 1);
   std::vector<std::string> command = {Interpreter()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return command;
 }
+
+}  // namespace
 
 VerbResult RunPythonProgram(const std::string& module, const std::vector<std::string>& arguments,
                             const Options& options, Terminal& terminal) {
@@ -194,12 +196,12 @@ VerbResult Export(const Options& options, Terminal& terminal) {
   }
   if (absl::Status bad = CheckTableFile(options.out); !bad.ok()) return bad;
   if (absl::Status bad = CheckPythonFor(options.out); !bad.ok()) return bad;
-  std::vector<std::string> arguments = {"--out", options.out};
+  std::vector<std::string> arguments = {"export", options.out};
   for (const auto& [key, value] : options.labels) {
-    arguments.insert(arguments.end(), {"--label", absl::StrCat(key, "=", value)});
+    arguments.push_back(absl::StrCat(key, "=", value));
   }
   arguments.insert(arguments.end(), options.jobs.begin(), options.jobs.end());
-  return RunPythonProgram("ballpiston.export", arguments, options, terminal);
+  return RunPythonProgram("ballpiston.command", arguments, options, terminal);
 }
 
 }  // namespace ballpiston::client

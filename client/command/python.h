@@ -29,8 +29,4 @@ absl::Status CheckTableFile(const std::string& out);
 VerbResult RunPythonProgram(const std::string& module, const std::vector<std::string>& arguments,
                             const Options& options, Terminal& terminal);
 
-// The command that runs the interpreter with these arguments. Adds the package to PYTHONPATH of
-// this process, which the interpreter inherits.
-std::vector<std::string> PythonCommand(const std::vector<std::string>& arguments);
-
 }  // namespace ballpiston::client

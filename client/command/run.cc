@@ -15,7 +15,6 @@
 #include "client/command/question.h"
 #include "client/command/selection.h"
 #include "client/command/verb_table.h"
-#include "client/library/child_process.h"
 #include "client/library/quoted.h"
 #include "client/library/request_id.h"
 #include "client/output/new_file.h"
@@ -112,18 +111,18 @@ void AddPoint(const v1::PointResult& point, ResultWriter& writer, std::ostream& 
 }
 
 // Replaces the content of the unfinished file, a result in JSON, by NumPy arrays.
-absl::Status ToArrays(NewFile& file, const std::string& path) {
+absl::Status ToArrays(NewFile& file, const Options& options, Terminal& terminal) {
   if (absl::Status written = file.Flush(); !written.ok()) return written;
   const std::string part = file.part().string();
   if (part.empty()) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--save: ", path, " is not a regular file, as .npz needs it"));
+        absl::StrCat("--save: ", options.save, " is not a regular file, as .npz needs it"));
   }
-  const auto status = RunChild({.command = PythonCommand({"-m", "ballpiston.to_arrays", part})});
-  if (!status.ok()) return status.status();
-  if (*status == 0) return absl::OkStatus();
-  return absl::InternalError(
-      absl::StrCat("--save: ", path, " is not written: Python ended with exit status ", *status));
+  const VerbResult end =
+      RunPythonProgram("ballpiston.command", {"arrays", part}, options, terminal);
+  if (!end.ok()) return end.status();
+  if (*end == ExitCode::kDone) return absl::OkStatus();
+  return absl::InternalError(absl::StrCat("--save: ", options.save, " is not written"));
 }
 
 bool IsNpz(const Options& options) { return absl::EndsWith(options.save, ".npz"); }
@@ -152,7 +151,7 @@ class Destination {
     writer_->End();
     if (file_) {
       const absl::Status converted =
-          IsNpz(options_) ? ToArrays(*file_, options_.save) : absl::OkStatus();
+          IsNpz(options_) ? ToArrays(*file_, options_, terminal_) : absl::OkStatus();
       if (!converted.ok()) return converted;
       if (absl::Status kept = file_->Keep(); !kept.ok()) return kept;
       terminal_.out << options_.save << '\n';

@@ -56,7 +56,7 @@ VerbResult Sample(const Options& options, Terminal& terminal) {
       options, terminal,
       [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
         if (is_csv) return WriteCsv(connection, spec, options.out, terminal);
-        return RunPythonProgram("ballpiston.sample", {Json(spec), "--out", options.out}, options,
+        return RunPythonProgram("ballpiston.command", {"sample", options.out, Json(spec)}, options,
                                 terminal);
       });
 }

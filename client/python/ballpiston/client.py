@@ -14,8 +14,8 @@ from ballpiston.closed_forms import ClosedForms
 from ballpiston.collisions import Collisions
 from ballpiston.connection import Connection
 from ballpiston.job import Job, check_labels
-from ballpiston.parameter_lists import Numbers, Shapes, number_list, real_number, shape_list
-from ballpiston.parameter_lists import truth_value, whole_number
+from ballpiston.parameter_lists import INT32, INT64, UINT64, Numbers, Shapes, number_list
+from ballpiston.parameter_lists import real_number, shape_list, truth_value, whole_number
 from ballpiston.plan import Plan
 from ballpiston.private_server import find_private_server
 from ballpiston.progress import progress_on_screen
@@ -29,6 +29,8 @@ from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trac
 
 _COLLECTION = "ensembleJobs/"
 _PAGE = 1000
+# Of submit and run, beside those of the question.
+_JOB_KEYWORDS = ("fresh", "priority", "request_id", "labels", "progress")
 
 
 def connect(
@@ -153,10 +155,10 @@ class Client:
             >>> job.watch()["mean_free_time_ball_piston"]
         """
         request = ensemble_pb2.CreateEnsembleJobRequest(
-            spec=question_of(experiment, question),
+            spec=question_of(experiment, question, _JOB_KEYWORDS),
             request_id=str(request_id or uuid.uuid4()),
             fresh=truth_value("fresh", fresh),
-            priority=whole_number("priority", priority),
+            priority=whole_number("priority", priority, *INT32),
             labels=check_labels(labels),
         )
         return Job(self._connection, self._create(request))
@@ -367,8 +369,8 @@ def _orbit_request(
     request = trace_pb2.TraceOrbitRequest(
         rho=real_number("rho", rho),
         delta=real_number("delta", delta),
-        events=whole_number("events", events),
-        seed=whole_number("seed", seed),
+        events=whole_number("events", events, *INT64),
+        seed=whole_number("seed", seed, *UINT64),
     )
     if cells is not None:
         if len(shapes := shape_list("cells", cells)) != 1:

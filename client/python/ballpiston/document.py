@@ -17,6 +17,7 @@ import functools
 import inspect
 import json
 import os
+import stat
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -87,13 +88,18 @@ def write_atomically(path: Path, data: bytes) -> None:
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
     """A file beside `path` to write to. It becomes `path` at the end, and goes after an error, so
-    that no half-written result remains."""
+    that no half-written result remains. A pipe or a device is written to directly."""
+    if path.exists() and not path.is_file():
+        yield path
+        return
+    path = path.resolve()  # symbolic links stay
+    mode = path.stat().st_mode if path.exists() else 0o666 & ~_current_umask()
     descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
     os.close(descriptor)
     temporary = Path(name)
     try:
         yield temporary
-        temporary.chmod(0o666 & ~_current_umask())  # mkstemp's files are private
+        temporary.chmod(stat.S_IMODE(mode))  # mkstemp's files are private
         temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)

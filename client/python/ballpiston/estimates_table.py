@@ -13,6 +13,7 @@ from ballpiston.job import Job
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
 from ballpiston.spelling import spelled
 from ballpiston.table_file import Table
+from ballpiston.v1 import ensemble_pb2
 from ballpiston.watch import has_ended
 
 _OF_JOB = ("job", "labels", "state", "experiment", "seed", "engine_version")
@@ -32,7 +33,7 @@ def estimates_table(jobs: Iterable[Job]) -> Table:
     left_out: list[ResultsExpired | NotFound] = []
     count = 0
     for count, job in enumerate(jobs, 1):
-        if not hasattr(job, "result"):
+        if not hasattr(job, "result_in"):
             raise TypeError(f"jobs has to be a list of jobs; one item is a {type(job).__name__}")
         try:
             rows += _rows(job)
@@ -52,7 +53,7 @@ def _note(text: str) -> None:
 
 
 def _rows(job: Job) -> Iterator[dict[str, Any]]:
-    result = job.result()
+    result = job.result_in(ensemble_pb2.ListResultsRequest.BASIC)
     if not has_ended(job.message.state):
         state, points = spelled(job.message, "state"), job.message.progress.points
         _note(f"{job.name} is still {state}: {len(result)} of {points} points are finished")

@@ -12,7 +12,7 @@ from typing import Any
 from ballpiston.async_watch import Update, watch_updates
 from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
-from ballpiston.errors import Error, ResultsExpired, Unavailable
+from ballpiston.errors import Error, NotFound, ResultsExpired
 from ballpiston.fields import value_of
 from ballpiston.progress import Progress, fraction_of, progress_on_screen
 from ballpiston.result import Result
@@ -165,6 +165,7 @@ class Job:
             JobFailed: the job failed; the exception says why.
             JobCancelled: somebody cancelled it.
             Unavailable: the server did not answer for two minutes. The job goes on.
+            ResourceExhausted: the server was busy for two minutes. The job goes on.
         """
         screen = progress_on_screen(progress)
         if self.answered_from_store and screen.is_visible:
@@ -174,8 +175,9 @@ class Job:
         except KeyboardInterrupt:
             print(_farewell(self.name), file=sys.stderr)
             raise
-        except Unavailable as error:
-            error.args = (f"{error}\n{_farewell(self.name)}",)
+        except Error as error:
+            if not isinstance(error, NotFound):
+                error.args = (f"{error}\n{_farewell(self.name)}",)
             raise
         self._raise_unless_succeeded()
         return self.result()
@@ -248,9 +250,13 @@ class Job:
             ResultsExpired: the server keeps only the specification:
                 `client.run(job.specification)` computes the same results again.
         """
+        return self.result_in(ensemble_pb2.ListResultsRequest.FULL)
+
+    def result_in(self, view: Any) -> Result:
+        """`result` in a view of the protocol: BASIC has no histograms or curves."""
         self.refresh()
         self.message.answered_from_store = self._is_from_store
-        request = ensemble_pb2.ListResultsRequest(parent=self.name, page_size=_PAGE)
+        request = ensemble_pb2.ListResultsRequest(parent=self.name, page_size=_PAGE, view=view)
         points: list[Any] = []
         while True:
             page = self._call(request)

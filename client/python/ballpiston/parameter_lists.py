@@ -26,6 +26,11 @@ import numpy.typing as npt
 Numbers = Union[float, str, Iterable[float], "npt.NDArray[np.floating]"]
 Shapes = Union[int, str, Iterable[Union[int, str]]]
 
+# Least and most of the protocol's integers.
+INT32 = (-(2**31), 2**31 - 1)
+INT64 = (-(2**63), 2**63 - 1)
+UINT64 = (0, 2**64 - 1)
+
 _MOST = 100_000  # values of a list
 _NUMBER_CHARACTERS = frozenset("0123456789+-.eE")
 
@@ -52,26 +57,37 @@ def shape_list(name: str, value: Shapes) -> list[str]:
     return shapes
 
 
-def whole_number(name: str, value: object) -> int:
+def whole_number(name: str, value: object, least: float = -math.inf, most: float = math.inf) -> int:
     """10000, 1e4 or np.int64(10000), as an int.
 
     Raises:
         TypeError: not a number.
-        ValueError: a number that is not whole.
+        ValueError: a number that is not whole, or not from `least` to `most`.
     """
     if isinstance(value, numbers.Integral) and not isinstance(value, bool):
-        return int(value)
-    number = real_number(name, value)
-    if not number.is_integer():
+        number = int(value)
+    elif (real := real_number(name, value)).is_integer():
+        number = int(real)
+    else:
         raise ValueError(f"{name} has to be a whole number, not {value!r}")
-    return int(number)
+    if not least <= number <= most:
+        raise ValueError(f"{name} has to be from {least} to {most}, not {value!r}")
+    return number
 
 
 def real_number(name: str, value: object) -> float:
-    """A float, or the TypeError that names the argument."""
+    """A float.
+
+    Raises:
+        TypeError: not a number.
+        ValueError: an int that exceeds the doubles.
+    """
     if isinstance(value, (bool, np.bool_)) or not _is_number(value):
         raise TypeError(f"{name} has to be a number, not {value!r}")
-    return float(value)  # type: ignore[arg-type]
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except OverflowError:
+        raise ValueError(f"{name} exceeds the range of double precision") from None
 
 
 def truth_value(name: str, value: object) -> bool:
@@ -123,9 +139,7 @@ def _parsed_range(name: str, text: str) -> list[float]:
             f"{name}: {text!r} is not a range; write from:to:count or from:to:count:log"
         )
     first, last = _parsed_number(name, parts[0]), _parsed_number(name, parts[1])
-    count = whole_number(f"{name}: the count of {text!r}", _parsed_number(name, parts[2]))
-    if not 1 <= count <= _MOST:
-        raise ValueError(f"{name}: the count of {text!r} has to be from 1 to {_MOST}")
+    count = whole_number(f"{name}: the count of {text!r}", _parsed_number(name, parts[2]), 1, _MOST)
     if count == 1 and first != last:
         raise ValueError(
             f"{name}: {text!r} has two different ends and a count of 1; permitted: a count of at "
@@ -157,7 +171,7 @@ def _parsed_shapes(name: str, text: str) -> list[str]:
 
 def _chain(name: str, value: object) -> str:
     number = real_number(name, value)
-    whole = round(number)
-    if abs(number - whole) > 1e-12 * abs(number):  # those of a logarithmic range are rounded
+    # Those of a logarithmic range are rounded.
+    if not math.isfinite(number) or abs(number - round(number)) > 1e-12 * abs(number):
         raise ValueError(f"{name} has to have whole numbers, not {value!r}")
-    return str(whole)
+    return str(round(number))

@@ -50,6 +50,9 @@ class _TqdmBar(Bar):
             shape = "{percentage:3.0f}%|{bar}| {desc} [{elapsed}<{remaining}]"
             # `initial`: tqdm computes the time left from the progress during this watch only.
             self._bar = self._tqdm(total=1.0, initial=fraction, bar_format=shape, file=sys.stderr)
+        if fraction <= self._bar.initial:  # no work yet: the time in the queue does not count
+            self._bar.initial = fraction
+            self._bar.unpause()
         self._bar.n = fraction
         self._bar.set_description_str(text, refresh=False)
         self._bar.refresh()

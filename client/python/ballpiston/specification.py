@@ -7,12 +7,14 @@ energy of a ball-piston pair is 1/2, the Boltzmann constant is 1.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
 from google.protobuf import json_format
 
 from ballpiston.parameter_lists import (
+    INT64,
+    UINT64,
     Numbers,
     Shapes,
     number_list,
@@ -25,9 +27,6 @@ from ballpiston.points_table import Points, add_points
 from ballpiston.spelling import from_spelling
 from ballpiston.suggestion import did_you_mean
 from ballpiston.v1 import spec_pb2
-
-_MOST_SEED = 2**64 - 1
-_MOST_COUNT = 2**63 - 1
 
 
 def specification(
@@ -110,8 +109,10 @@ def specification(
         add_points(points, spec.grid)
     set_target(spec, samples, collisions, tolerance, budget)
     if estimate is not None:
+        if not isinstance(estimate, str):
+            raise TypeError(f"estimate has to be a str, not {estimate!r}")
         spec.target.estimate = estimate
-    spec.seed = _within("seed", seed, 0, _MOST_SEED)
+    spec.seed = whole_number("seed", seed, *UINT64)
     if model is not None:
         spec.model = from_spelling(spec_pb2.EnsembleSpec.Model, "model", model)
     if precision is not None:
@@ -119,16 +120,20 @@ def specification(
     return spec
 
 
-def question_of(experiment: object, question: Mapping[str, Any]) -> Any:
-    """The message for the arguments of submit, run and plan. In place of an experiment's name they
-    take a message, such as job.specification, or its JSON as a dict.
+def question_of(experiment: object, question: Mapping[str, Any], others: Iterable[str] = ()) -> Any:
+    """The message for the arguments of submit, run, plan and sample. In place of an experiment's
+    name they take a message, such as job.specification, or its JSON as a dict. `others` are further
+    keywords of the method, for suggestions.
 
     Raises:
         TypeError: a keyword that does not exist; the message suggests the nearest one.
         ValueError: a dict that is not a specification.
     """
     if isinstance(experiment, str):
-        _check_keywords(question)
+        for name in question:
+            if name not in _KEYWORDS:
+                hint = did_you_mean(name, [*_KEYWORDS, *others])
+                raise TypeError(f"there is no keyword {name!r}{hint}")
         return specification(experiment, **question)
     if question:
         raise TypeError(
@@ -173,15 +178,6 @@ def _keywords_of(function: Callable[..., Any]) -> dict[str, inspect.Parameter]:
 
 
 _KEYWORDS = _keywords_of(specification)
-# Those of submit and run, for suggestions.
-_JOB_KEYWORDS = ("fresh", "priority", "request_id", "labels", "progress")
-
-
-def _check_keywords(question: Mapping[str, Any]) -> None:
-    for name in question:
-        if name not in _KEYWORDS:
-            hint = did_you_mean(name, [*_KEYWORDS, *_JOB_KEYWORDS])
-            raise TypeError(f"there is no keyword {name!r}{hint}")
 
 
 def set_target(
@@ -206,20 +202,13 @@ def set_target(
             "tolerance, budget; only tolerance and budget may stand together"
         )
     if samples is not None:
-        spec.target.samples = _within("samples", samples, -_MOST_COUNT, _MOST_COUNT)
+        spec.target.samples = whole_number("samples", samples, *INT64)
     if collisions is not None:
-        spec.target.collisions = _within("collisions", collisions, -_MOST_COUNT, _MOST_COUNT)
+        spec.target.collisions = whole_number("collisions", collisions, *INT64)
     if tolerance is not None:
         spec.target.tolerance = real_number("tolerance", tolerance) + 0.0
     if budget is not None:
         spec.target.budget.FromNanoseconds(_nanoseconds(real_number("budget", budget)))
-
-
-def _within(name: str, value: object, least: int, most: int) -> int:
-    number = whole_number(name, value)
-    if not least <= number <= most:
-        raise ValueError(f"{name} has to be from {least} to {most}, not {value!r}")
-    return number
 
 
 def _nanoseconds(budget: float) -> int:

@@ -3,7 +3,8 @@
 If the stream breaks, the watch attaches again with the last resume token that it saw, after pauses
 that double from 0.1 s to 5 s, or as long as the server's error says, until nothing was heard for
 two minutes. A stream is broken by UNAVAILABLE, by CANCELLED without a reason, as from a server that
-stops, and by an end without a terminal state. Every other error ends the watch.
+stops, by RESOURCE_EXHAUSTED with a reason, as from a server that is busy, and by an end without a
+terminal state. Every other error ends the watch.
 """
 
 from __future__ import annotations
@@ -63,7 +64,7 @@ def watch_job(
     """Blocks until the job has ended and returns it, as an EnsembleJob.
 
     Raises:
-        Unavailable: the watch gave up.
+        Unavailable, ResourceExhausted: the watch gave up.
         Error: any other error of the server.
     """
     watch = Attachments(name, pace)
@@ -111,12 +112,15 @@ class Attachments:
         """Seconds until the next stream, after one that `why` ended.
 
         Raises:
-            Error: `why`, if it does not say that the stream broke.
-            Unavailable: it is time to give up.
+            Error: `why`, if it does not say that the stream broke, or if it is time to give up and
+                the server is busy.
+            Unavailable: it is time to give up, and no server answers.
         """
         if not _is_broken_stream(why):
             raise why
         pause = self._pace.next_pause(time.monotonic(), why.retry_delay)
+        if pause is None and why.code == "RESOURCE_EXHAUSTED":
+            raise why
         if pause is None:
             silence = f"{self._pace.give_up_after:g} s"
             raise Unavailable(
@@ -145,4 +149,5 @@ def _read_stream(connection: Connection, watch: Attachments, screen: Progress) -
 
 
 def _is_broken_stream(why: Error) -> bool:
-    return why.code == "UNAVAILABLE" or (why.code == "CANCELLED" and not why.reason)
+    end = (why.code, bool(why.reason))
+    return why.code == "UNAVAILABLE" or end in {("CANCELLED", False), ("RESOURCE_EXHAUSTED", True)}

@@ -15,6 +15,7 @@ import pytest
 from conftest import ENDLESS, FIRST_HITS, Home
 
 import ballpiston
+from ballpiston.v1 import ensemble_pb2
 
 TABLE = {"rho": [0.53, 0.6, 0.55], "delta": [0.1, 0.05, 0.2]}
 OF_THE_TABLE = {"epsilon": 0.125, "exponent": 1, "samples": 100}
@@ -111,6 +112,8 @@ def test_the_estimates_of_many_jobs_are_one_table(home: Home, tmp_path: Path) ->
         jobs = [client.submit(**hits(s), labels={"run": "table"}) for s in (106, 107)]
         results = [job.watch(progress=False) for job in jobs]
         table = ballpiston.estimates_table(client.jobs(labels={"run": "table"}))
+        basic = jobs[0].result_in(ensemble_pb2.ListResultsRequest.BASIC)
+    assert results[0].messages[0].histograms and not basic.messages[0].histograms
     times = table["value"][table["name"] == "mean_hit_time"]
     assert set(times) == {time for result in results for time in result["mean_hit_time"]}
     assert set(table["seed"]) == {"106", "107"} and set(table["labels"]) == {"run=table"}
@@ -137,7 +140,8 @@ def test_an_export_without_a_job_or_without_results_fails(
     class Expired:
         name = "ensembleJobs/old"
 
-        def result(self) -> None:
+        def result_in(self, view: int) -> None:
+            assert view == ensemble_pb2.ListResultsRequest.BASIC
             raise ballpiston.ResultsExpired("the results have expired")
 
     with pytest.raises(ballpiston.ResultsExpired):

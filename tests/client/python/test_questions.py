@@ -55,11 +55,18 @@ def test_shapes_are_numbers_or_texts() -> None:
         ({0.1: 1}, TypeError),
         (np.zeros((2, 2)), ValueError),
         ("0.1:0.2:1", ValueError),
+        pytest.param(10**400, ValueError, id="10**400"),
     ],
 )
 def test_what_is_not_a_list_is_an_error(values: Any, error: type[Exception]) -> None:
     with pytest.raises(error, match="delta"):
         grid(delta=values)
+
+
+@pytest.mark.parametrize("values", ["1e999", float("inf"), float("nan"), [8, 10**400]])
+def test_a_chain_has_a_finite_number_of_cells(values: Any) -> None:
+    with pytest.raises(ValueError, match="^cells"):
+        grid(cells=values)
 
 
 def test_whole_numbers_may_be_floats() -> None:
@@ -80,6 +87,17 @@ def test_a_seed_has_64_bits() -> None:
     assert ballpiston.specification("first-hit", seed=2**64 - 1).seed == 2**64 - 1
     with pytest.raises(ValueError, match="seed"):
         ballpiston.specification("first-hit", seed=-1)
+
+
+def test_numbers_that_cannot_be_sent_are_named(client: ballpiston.Client) -> None:
+    with pytest.raises(ValueError, match="^seed has to be from 0 to"):
+        client.trace(rho=0.5296, delta=0.1, events=1, seed=-1)
+    with pytest.raises(ValueError, match="^events has to be from"):
+        client.trace(rho=0.5296, delta=0.1, events=1e20)
+    with pytest.raises(ValueError, match="^priority has to be from"):
+        client.submit("first-hit", priority=10**12)
+    with pytest.raises(TypeError, match="^estimate has to be a str, not 5"):
+        ballpiston.specification("lyapunov", estimate=5)  # type: ignore[arg-type]
 
 
 def test_a_budget_below_a_nanosecond_is_named_as_it_was_given() -> None:
@@ -108,6 +126,10 @@ def test_an_unknown_keyword_is_a_type_error_with_a_suggestion(client: ballpiston
         client.submit("first-hit", rho=0.5296, deltta=0.1)
     with pytest.raises(TypeError, match="did you mean 'samples'"):
         client.run("first-hit", rho=0.5296, sample=10)
+    with pytest.raises(TypeError, match="did you mean 'labels'"):
+        client.run("first-hit", label={})
+    with pytest.raises(TypeError, match="no keyword 'labels'$"):
+        client.sample("first-hit", labels={})
     assert len(client.jobs(limit=None)) == before
 
 

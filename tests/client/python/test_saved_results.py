@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import FIRST_HITS, Home
+from conftest import FIRST_HITS, LIMIT, Home
 from google.protobuf import json_format
 
 import ballpiston
+from ballpiston.document import write_atomically
 
 
 def test_a_result_is_equal_after_it_was_saved_and_loaded(
@@ -48,6 +51,22 @@ def test_the_command_line_saves_the_same_arrays(home: Home, tmp_path: Path) -> N
         assert sorted(saved) == sorted(arrays)
         for name in arrays:
             np.testing.assert_array_equal(saved[name], arrays[name], name)
+
+
+def test_an_interruption_ends_the_conversion_to_arrays(
+    home: Home, first_hits: ballpiston.Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    python = tmp_path / "python3"
+    python.write_text('#!/bin/sh\n[ "$1" = -c ] || { echo started; sleep 5; echo late; }\n')
+    python.chmod(0o700)
+    monkeypatch.setenv("BALLPISTON_PYTHON", str(python))
+    words = ("result", first_hits.job_name, "--save", str(tmp_path / "a.npz"))
+    command = [str(home.programs / "ballpiston"), *words]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as client:
+        assert client.stdout is not None and client.stdout.readline() == "started\n"
+        client.terminate()
+        assert client.communicate(timeout=LIMIT)[0] == ""
+    assert client.returncode == 130 and list(tmp_path.iterdir()) == [python]
 
 
 def test_an_archive_has_the_arrays_of_the_result(
@@ -150,6 +169,21 @@ def test_the_end_of_the_name_decides_the_format(
     with pytest.raises(ValueError, match=".json or .npz"):
         first_hits.save(tmp_path / "saved.csv")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_links_permissions_and_pipes_stay(tmp_path: Path) -> None:
+    target, link, pipe = (tmp_path / name for name in ("target", "link", "pipe"))
+    target.touch(0o640)
+    link.symlink_to("target")
+    write_atomically(link, b"text")
+    assert link.is_symlink() and target.read_bytes() == b"text"
+    assert target.stat().st_mode & 0o777 == 0o640
+
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    write_atomically(pipe, b"text")
+    assert os.read(reader, 9) == b"text" and sorted(tmp_path.iterdir()) == [link, pipe, target]
+    os.close(reader)
 
 
 def test_a_result_of_an_unfinished_job_has_its_finished_points(

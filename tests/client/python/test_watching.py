@@ -14,10 +14,10 @@ import pytest
 from conftest import ENDLESS, FIRST_HITS, LIMIT, Home, wait_until
 
 import ballpiston
-from ballpiston.errors import Unavailable
-from ballpiston.progress import Bar, Progress
+from ballpiston.errors import ResourceExhausted, Unavailable
+from ballpiston.progress import Bar, Progress, _TqdmBar
 from ballpiston.v1 import ensemble_pb2
-from ballpiston.watch import ReattachPace, watch_job
+from ballpiston.watch import Attachments, ReattachPace, watch_job
 
 
 def streams(client: ballpiston.Client) -> float:
@@ -135,6 +135,18 @@ def test_a_bar_shows_points_an_estimate_and_lost_connections() -> None:
     ]
 
 
+def test_the_time_left_does_not_count_the_time_in_the_queue(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tqdm = pytest.importorskip("tqdm").tqdm
+    now = 0.0
+    monkeypatch.setattr("tqdm.std.time", lambda: now)
+    bar = _TqdmBar(tqdm)
+    for now, fraction in ((0.0, 0.0), (1000.0, 0.0), (1010.0, 0.5)):
+        bar.show(fraction, "")
+    assert "[00:10<00:10]" in capsys.readouterr().err
+
+
 def test_pauses_double_until_the_server_is_heard() -> None:
     pace = ReattachPace(now=0, first=1, longest=4, give_up_after=1000)
     for expected in (1, 2, 4, 4):
@@ -205,12 +217,32 @@ def test_a_watch_that_gives_up_says_why() -> None:
         )
 
 
+def test_a_watch_waits_for_a_busy_server() -> None:
+    busy = ResourceExhausted("too many", code="RESOURCE_EXHAUSTED", reason="TOO_MANY_STREAMS")
+    assert Attachments("ensembleJobs/1").pause_after(busy) > 0
+    hasty = Attachments("ensembleJobs/1", ReattachPace(time.monotonic(), give_up_after=0))
+    with pytest.raises(ResourceExhausted, match="too many"):
+        hasty.pause_after(busy)
+
+
+def test_an_error_ends_the_watch_and_the_message_says_how_to_watch_again(
+    client: ballpiston.Client, endless: ballpiston.Job, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def expired(*_: Any) -> None:
+        raise ballpiston.Unauthenticated("the token has expired")
+
+    monkeypatch.setattr("ballpiston.job.watch_job", expired)
+    with pytest.raises(ballpiston.Unauthenticated, match="expired\\nThe job goes on"):
+        endless.watch()
+
+
 def test_a_watch_of_no_job_is_an_error(client: ballpiston.Client) -> None:
     job = client.submit(**FIRST_HITS, fresh=True)
     job.watch()
     job.delete()
-    with pytest.raises(ballpiston.NotFound):
+    with pytest.raises(ballpiston.NotFound) as no_job:
         job.watch()
+    assert "goes on" not in str(no_job.value)
 
 
 def test_a_program_that_is_missing_is_named(
