@@ -44,7 +44,7 @@ def number_list(name: str, value: Numbers) -> list[float]:
     """
     if isinstance(value, str):
         return _parsed_list(name, value)
-    return [real_number(name, item) + 0.0 for item in _items(name, value)]  # + 0.0: -0.0 becomes 0.0
+    return [real_number(name, item) for item in _items(name, value)]
 
 
 def shape_list(name: str, value: Shapes) -> list[str]:
@@ -123,7 +123,7 @@ def _parsed_list(name: str, text: str) -> list[float]:
 def _parsed_number(name: str, text: str) -> float:
     if text and set(text) <= _NUMBER_CHARACTERS:
         try:
-            return float(text) + 0.0
+            return float(text)
         except ValueError:
             pass
     raise ValueError(f"{name}: {text!r} is not a decimal number such as 0.1 or 1e-3")

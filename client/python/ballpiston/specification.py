@@ -206,7 +206,7 @@ def set_target(
     if collisions is not None:
         spec.target.collisions = whole_number("collisions", collisions, *INT64)
     if tolerance is not None:
-        spec.target.tolerance = real_number("tolerance", tolerance) + 0.0
+        spec.target.tolerance = real_number("tolerance", tolerance)
     if budget is not None:
         spec.target.budget.FromNanoseconds(_nanoseconds(real_number("budget", budget)))
 
