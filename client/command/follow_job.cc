@@ -35,7 +35,7 @@ absl::StatusOr<v1::EnsembleJob> FollowJob(const Connection& connection, const st
   const Interrupts::Scope scope(terminal.interrupts, [&] { reporter.Farewell(farewell); });
   absl::StatusOr<v1::EnsembleJob> job = connection.client.Watch(name, Report(reporter));
   reporter.OnEnd();
-  if (absl::IsUnavailable(job.status())) reporter.Note(farewell);
+  if (!job.ok() && !absl::IsNotFound(job.status())) reporter.Note(farewell);
   return job;
 }
 

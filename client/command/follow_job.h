@@ -1,7 +1,7 @@
 // Watches a job to its end from the terminal, with progress on standard error.
 //
-// An interruption (interrupts.h) ends the watch, but not the job. The message says how to watch the
-// job again and how to cancel it.
+// An interruption (interrupts.h) or an error ends the watch, but not the job. The message says how
+// to watch the job again and how to cancel it.
 #pragma once
 
 #include <string>

@@ -4,6 +4,7 @@
 #include "absl/time/clock.h"
 #include "client/command/connection.h"
 #include "client/command/selection.h"
+#include "client/library/error_text.h"
 #include "client/output/json.h"
 #include "client/output/new_file.h"
 #include "client/web/page_files.h"
@@ -14,14 +15,15 @@ namespace {
 constexpr size_t kMostPoints = 10'000;  // of a job; some 6 MB
 constexpr size_t kMostPictured = 12;    // points with histograms and curves; as in report.js
 
-// The points of the job as JSON.
+// The points of the job as JSON. If its results have expired, or expire now: those fetched so far.
 absl::StatusOr<std::vector<std::string>> PointsOf(const Connection& connection,
                                                   const std::string& name) {
   std::vector<std::string> points;
   std::string token;
   do {
     const auto page = connection.client.ResultsPage(name, v1::ListResultsRequest::BASIC, token);
-    if (!page.ok()) return HintIfExpired(page.status(), connection, name);
+    if (ErrorReason(page.status()) == "RESULTS_EXPIRED") return points;
+    if (!page.ok()) return page.status();
     for (const v1::PointResult& point : page->results()) {
       if (points.size() == kMostPoints) return points;
       if (points.size() >= kMostPictured) {
@@ -29,7 +31,8 @@ absl::StatusOr<std::vector<std::string>> PointsOf(const Connection& connection,
         continue;
       }
       const auto whole = connection.client.Point(name, point.index());
-      if (!whole.ok()) return HintIfExpired(whole.status(), connection, name);
+      if (ErrorReason(whole.status()) == "RESULTS_EXPIRED") return points;
+      if (!whole.ok()) return whole.status();
       points.push_back(Json(*whole));
     }
     token = page->next_page_token();

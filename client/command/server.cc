@@ -1,10 +1,12 @@
 // ballpiston server: starts, stops, checks and backs up servers on this machine, and makes tokens.
 #include <signal.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
 #include "absl/status/status.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/command/connection.h"
@@ -35,7 +37,11 @@ absl::StatusOr<ServerProgram> ProgramOf(const Options& options) {
 }
 
 absl::Status CheckStart(const Options& options) {
-  if (!options.given.contains("--listen") || !options.data_dir.empty()) return absl::OkStatus();
+  const bool has_address = std::any_of(
+      options.server_flags.begin(), options.server_flags.end(), [](const std::string& flag) {
+        return flag == "--listen" || absl::StartsWith(flag, "--listen=");
+      });
+  if (!has_address || !options.data_dir.empty()) return absl::OkStatus();
   return absl::InvalidArgumentError(
       "--listen: the private server has a fixed address; to start a server with another address, "
       "give it its own folder with --data-dir");

@@ -102,8 +102,8 @@ class Client {
   absl::StatusOr<v1::ServerStatus> Status() const;
 
   // Follows the job to its end (job_watch.h), and returns the ended job, without its grid.
-  // CANCELLED if `stop` was requested (the job continues), UNAVAILABLE if the watch gave up, else
-  // the server's error.
+  // CANCELLED if `stop` was requested (the job continues), UNAVAILABLE if the watch gave up
+  // (RESOURCE_EXHAUSTED if the server was busy), else the server's error.
   absl::StatusOr<v1::EnsembleJob> Watch(const std::string& name, const WatchCallbacks& callbacks,
                                         const WatchOptions& options = {},
                                         std::stop_token stop = {}) const;

@@ -25,9 +25,11 @@ bool Pause(absl::Duration length, const std::stop_token& stop) {
 }
 
 // If a stream reaches a server that is just stopping, gRPC ends the stream with CANCELLED and no
-// reason.
+// reason. A busy server refuses a stream with RESOURCE_EXHAUSTED and a reason.
 bool IsBrokenStream(const absl::Status& end) {
-  return absl::IsUnavailable(end) || (absl::IsCancelled(end) && ErrorReason(end).empty());
+  const bool has_reason = !ErrorReason(end).empty();
+  return absl::IsUnavailable(end) || (absl::IsCancelled(end) && !has_reason) ||
+         (absl::IsResourceExhausted(end) && has_reason);
 }
 
 // When a watch that lost its server retries, and when it gives up. Each pause is up to a quarter
@@ -126,6 +128,7 @@ class JobWatch {
 
   absl::Status WaitToReattach(const absl::Status& why) {
     const std::optional<absl::Duration> pause = pace_.NextPause(RetryDelay(why));
+    if (!pause && absl::IsResourceExhausted(why)) return why;  // the server answers, but is busy
     if (!pause) {
       return absl::UnavailableError(absl::StrCat("gave up watching after ",
                                                  absl::FormatDuration(options_.give_up_after),

@@ -1,10 +1,11 @@
 // Client::Watch follows a job to its end, even if the server restarts or the connection breaks.
 //
 // A stream is broken if it ends with UNAVAILABLE, with CANCELLED and no reason (a server that stops
-// does this), or without a terminal state. The watch then pauses and reconnects with the last
-// resume token that it received. The pauses double from `initial_backoff` to `max_backoff`, and are
-// at least as long as the server's error says. After
-// `give_up_after` without a message the watch gives up. Every other error ends the watch.
+// does this), with RESOURCE_EXHAUSTED and a reason (the server has too many streams), or without a
+// terminal state. The watch then pauses and reconnects with the last resume token that it received.
+// The pauses double from `initial_backoff` to `max_backoff`, and are at least as long as the
+// server's error says. After `give_up_after` without a message the watch gives up. Every other
+// error ends the watch.
 //
 // Properties, each with a test of its name:
 //   1. PassesTheLastResumeTokenOn.     2. ShowsTheTerminalStateOnce.

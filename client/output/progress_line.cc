@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -62,9 +63,10 @@ double ProgressMeter::FractionOf(const v1::JobProgress& progress) {
 
 void ProgressMeter::Update(const v1::JobProgress& progress, absl::Time now) {
   now_ = {progress, now};
-  // Fewer samples than at first: a server died and lost the samples since its last checkpoint. The
-  // means start again.
-  if (!first_ || progress.samples() < first_->progress.samples()) first_ = now_;
+  // Nothing was computed since the first reading: the job waits in the queue, or a server died and
+  // lost the samples since its last checkpoint. The means start again.
+  const auto work = [](const v1::JobProgress& p) { return std::pair(p.samples(), FractionOf(p)); };
+  if (!first_ || work(progress) <= work(first_->progress)) first_ = now_;
 }
 
 std::optional<double> ProgressMeter::SamplesPerSecond() const {

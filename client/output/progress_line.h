@@ -11,9 +11,10 @@
 
 namespace ballpiston::client {
 
-// Measures from the snapshots received so far. Rates are means since the first snapshot of this
-// watch. They start again if a server died and lost the work since its last checkpoint. Therefore
-// work before the watch and lost work do not distort them. The caller passes the time.
+// Measures from the snapshots received so far. Rates are means since the last snapshot of this
+// watch without new work. They start again if a server died and lost the work since its last
+// checkpoint. Therefore time in the queue, work before the watch and lost work do not distort them.
+// The caller passes the time.
 class ProgressMeter {
  public:
   void Update(const v1::JobProgress& progress, absl::Time now);

@@ -65,11 +65,12 @@ void ProgressReporter::OnSnapshot(const v1::StatisticsSnapshot& snapshot) {
   Show(snapshot);
 }
 
-void ProgressReporter::OnDisconnect(const absl::Status&, absl::Duration pause) {
+void ProgressReporter::OnDisconnect(const absl::Status& why, absl::Duration pause) {
   const std::lock_guard lock(mutex_);
   if (style_ != ProgressStyle::kBar) return;
+  const char* const what = absl::IsResourceExhausted(why) ? "server busy" : "connection lost";
   err_ << kClearLine
-       << absl::StrFormat("connection lost, retrying in %.1f s", absl::ToDoubleSeconds(pause))
+       << absl::StrFormat("%s, retrying in %.1f s", what, absl::ToDoubleSeconds(pause))
        << std::flush;
   drawn_ = true;
 }

@@ -69,6 +69,19 @@ TEST_F(ConnectionTest, ANamedServerGetsOneAttempt) {
   EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), kChannelAttempts);
 }
 
+// For instance because a token expired.
+TEST_F(ConnectionTest, AnErrorOfAWatchShowsHowToWatchTheJobAgain) {
+  server_.ensemble.watches = {{{}, grpc::Status(grpc::StatusCode::UNAUTHENTICATED, "expired")}};
+  for (const char* verb : {"watch abc", "run first-hit"}) {
+    const Outcome outcome = WithServer(absl::StrSplit(verb, ' '));
+    EXPECT_EQ(outcome.code, 6);
+    EXPECT_THAT(outcome.err, StartsWith("The job continues.\n  watch it again:  ballpiston watch "
+                                        "ensembleJobs/abc --server " +
+                                        server_.Address() + "\n"));
+    EXPECT_THAT(outcome.err, EndsWith("\nballpiston: expired\n"));
+  }
+}
+
 // Five points on three pages; the first attempts to list the second page fail.
 TEST_F(ConnectionTest, OnlyAPrivateServerIsAskedForAPageAgain) {
   for (int i = 1; i < 5; ++i) server_.ensemble.points.emplace_back().set_index(i);

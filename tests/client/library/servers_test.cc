@@ -50,6 +50,14 @@ TEST_F(ChildProcessTest, StartsWithNoSignalBlocked) {
   pthread_sigmask(SIG_SETMASK, &old, nullptr);
 }
 
+// As under nohup.
+TEST_F(ChildProcessTest, IgnoresSighupIfThisProgramDoes) {
+  const auto old = signal(SIGHUP, SIG_IGN);
+  EXPECT_EQ(RunShell("kill -HUP $$; echo survived"), 0);
+  signal(SIGHUP, old);
+  EXPECT_EQ(Output(), "survived\n");
+}
+
 TEST_F(ChildProcessTest, AMissingProgramIsNotFound) {
   EXPECT_THAT(
       RunChild({.command = {"no-such-program"}, .folder = "", .output = "", .detached = false}),

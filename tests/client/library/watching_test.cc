@@ -140,6 +140,25 @@ TEST_F(JobWatch, APauseIsAsLongAsTheServerAsks) {
   EXPECT_THAT(pauses_, ElementsAre(AllOf(Ge(20), Le(25.1))));
 }
 
+WatchScript TooManyStreams() {
+  return {{},
+          WithReason(grpc::StatusCode::RESOURCE_EXHAUSTED, "2 open streams", "TOO_MANY_STREAMS")};
+}
+
+TEST_F(JobWatch, WaitsForABusyServer) {
+  Start({TooManyStreams(), Succeeded()});
+  EXPECT_OK(Watch());
+  EXPECT_THAT(pauses_, SizeIs(1));
+}
+
+TEST_F(JobWatch, ReturnsTheErrorOfAServerThatStaysBusy) {
+  Start({TooManyStreams()});
+  options_.give_up_after = absl::Milliseconds(50);
+  EXPECT_THAT(Watch(), StatusIs(absl::StatusCode::kResourceExhausted,
+                                HasSubstr("2 open streams (TOO_MANY_STREAMS)")));
+  EXPECT_THAT(pauses_, SizeIs(Ge(1)));
+}
+
 // No server listens at the address for a while, as during a restart.
 TEST_F(JobWatch, WaitsForAnAbsentServer) {
   server_.ensemble.watches = {Succeeded()};

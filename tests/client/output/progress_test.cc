@@ -55,6 +55,18 @@ TEST(ProgressMeter, StartsAgainWhenSamplesWereLost) {
   EXPECT_DOUBLE_EQ(*meter.SamplesPerSecond(), 1e4);
 }
 
+// The job waits for 1000 s, then computes its second half in the same time as its first.
+TEST(ProgressMeter, TimeInTheQueueDoesNotCount) {
+  ProgressMeter meter;
+  for (const int second : {0, 500, 1000}) {
+    meter.Update(Progress(0, 0, 0), kFirstReading + absl::Seconds(second));
+    EXPECT_EQ(meter.TimeLeft(), std::nullopt);
+  }
+  meter.Update(Progress(50, 1e6, 0.5), kFirstReading + absl::Seconds(1010));
+  EXPECT_DOUBLE_EQ(*meter.SamplesPerSecond(), 1e5);
+  EXPECT_NEAR(absl::ToDoubleSeconds(*meter.TimeLeft()), 10, 1e-6);
+}
+
 TEST(ProgressLine, ShowsWhatFitsIntoTheWidth) {
   ProgressMeter halfway;
   halfway.Update(Progress(0, 0, 0), kFirstReading);
@@ -188,6 +200,8 @@ TEST(ProgressBar, ANoteClearsTheMessageOfALostConnection) {
   EXPECT_THAT(Screen(report.Text()), ElementsAre("connection lost, retrying in 1.5 s"));
   report.reporter.Note("a");
   EXPECT_THAT(Screen(report.Text()), ElementsAre("a", ""));
+  report.reporter.OnDisconnect(absl::ResourceExhaustedError("2 open streams"), absl::Seconds(5));
+  EXPECT_THAT(Screen(report.Text()), ElementsAre("a", "server busy, retrying in 5.0 s"));
 }
 
 // The farewell keeps its lock until the process ends. Therefore these objects are never destroyed.
