@@ -1,8 +1,8 @@
 // Starts other programs: servers, the Python package, and commands of the user.
 //
 // A child process does not inherit this program's signal settings or open files: it starts with no
-// signal blocked, and with only the three standard files open. It ignores no signal but SIGHUP, if
-// this program ignores it (nohup).
+// signal blocked, and with only the three standard files open. Of the signals that end a program it
+// ignores only SIGHUP, and only if this program ignores SIGHUP (nohup).
 #pragma once
 
 #include <sys/types.h>

@@ -11,10 +11,10 @@
 
 namespace ballpiston::client {
 
-// Measures from the snapshots received so far. Rates are means since the last snapshot of this
-// watch without new work. They start again if a server died and lost the work since its last
-// checkpoint. Therefore time in the queue, work before the watch and lost work do not distort them.
-// The caller passes the time.
+// Measures from the snapshots received so far. Rates are means since this watch saw work begin:
+// since the last snapshot that has no more work than the first. They start again if a server died
+// and lost the work since its last checkpoint. Therefore time in the queue before the work, work
+// before the watch and lost work do not distort them. The caller passes the time.
 class ProgressMeter {
  public:
   void Update(const v1::JobProgress& progress, absl::Time now);

@@ -85,11 +85,8 @@ void CheckLists(const EnsembleSpec& spec, Found& found) {
   CheckPointCount(spec.grid, found);
 }
 
-// Five lists may have 10^5 wrong values each; not all are reported.
-constexpr size_t kMostReported = 1000;
-
 void CheckEachValue(const Parameter& parameter, const std::vector<double>& values, Found& found) {
-  for (size_t i = 0; i < values.size() && found.size() < kMostReported; ++i) {
+  for (size_t i = 0; i < values.size(); ++i) {
     const absl::Status status = parameter.Validate(values[i]);
     if (status.ok()) continue;
     found.push_back(

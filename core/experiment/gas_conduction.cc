@@ -107,8 +107,8 @@ struct SteadyTimes {
 
 // Of a trajectory of a billiard; those of the jump process are smaller.
 double StateBytes(const GasGeometry& geometry) {
-  return 8 * (4 * static_cast<double>(geometry.balls()) +
-              2 * static_cast<double>(geometry.pistons()));
+  return 8 *
+         (4 * static_cast<double>(geometry.balls()) + 2 * static_cast<double>(geometry.pistons()));
 }
 
 // A stretch is half a relaxation time, or a part of it if the stretches of a group would take more

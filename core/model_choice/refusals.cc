@@ -97,6 +97,7 @@ FieldViolation BelowReach(const EnsembleSpec& spec, double least) {
   absl::string_view other;
   if (IsOfTheLimit(spec.model)) other = ", or model auto or billiard";
   if (spec.precision == Precision::kSingle) other = ", or precision double";
+  // From here on RoundedUp writes 1, and a tolerance of 1 is not permitted.
   constexpr double kRoundsToOne = 0.995 / 1.05;
   const std::string permitted = least < kRoundsToOne
                                     ? absl::StrCat("tolerance >= ", RoundedUp(least))
@@ -203,8 +204,8 @@ void CheckBudget(const EnsembleSpec& spec, const Machine& machine,
   const std::string permitted =
       1.05 * seconds <= kMaxBudgetSeconds
           ? absl::StrCat("budget >= ", RoundedUp(seconds), " s")
-          : absl::StrFormat("none, because they take longer than the largest budget, %.0g s",
-                            kMaxBudgetSeconds);
+          : absl::StrCat("no budget, because the first samples take longer than the largest one, ",
+                         NumberText(kMaxBudgetSeconds), " s");
   found.push_back(
       {"target.budget",
        absl::StrFormat("is %s s%s, which ends before the first samples are complete; permitted on "

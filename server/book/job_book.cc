@@ -113,13 +113,18 @@ void JobBook::StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& check
   active_.StartRun(job, std::move(run));
 }
 
-// The job's present state, of which the scheduler is told: a change that was written after the
-// caller's may be told before it. If the job was deleted meanwhile, its state when it was found.
+// Tells the scheduler the job's present state, and returns it. The row is read again, because
+// another call may have changed it since the caller's commit. If the job was deleted meanwhile,
+// returns `record`.
 absl::StatusOr<v1::EnsembleJob> JobBook::Answer(const Principal& caller, const JobRecord& record) {
-  absl::StatusOr<FoundJob> found = Find(caller, record.id, Grid::kIncluded);
-  if (absl::IsNotFound(found.status())) found = FoundJob{record};
+  absl::StatusOr<FoundJob> found;
+  {
+    MutexLock lock(telling_);
+    found = Find(caller, record.id, Grid::kIncluded);
+    if (absl::IsNotFound(found.status())) found = FoundJob{record};
+    TellScheduler(found.ok() ? found->record : record);
+  }
   if (!found.ok()) return found.status();
-  TellScheduler(found->record);
   v1::EnsembleJob job = Message(found->record, found->active.get());
   job.set_answered_from_store(record.job.answered_from_store());
   return job;

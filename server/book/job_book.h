@@ -27,6 +27,7 @@
 #include "server/convert/spec.h"
 #include "server/door/principal.h"
 #include "server/limits.h"
+#include "server/mutex.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
 
@@ -160,6 +161,7 @@ class JobBook {
   Scheduler& scheduler_;
   const std::shared_ptr<CrashRecord> crashes_;
   ActiveJobs active_;
+  Mutex telling_;  // so that the scheduler is told the rows in the order of their changes
   absl::Status limits_failure_;  // of the last call of KeepLimits
 };
 

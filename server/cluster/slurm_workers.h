@@ -4,8 +4,9 @@
 // The workers are tasks of job arrays. They are all alike, and Slurm knows nothing of leases. So it
 // does not matter which of them Slurm loses, starts twice or never starts: the next query of the
 // queue counts those that are there, and the difference is submitted. All workers of a server have
-// one job name. One query in 30 s; none while there is no work. Thread-safe. One thread, because
-// Slurm's tools may block for minutes.
+// one job name. One query in 30 s, fewer after an error; none while there is no work, no
+// worker in the queue and no problem. Thread-safe. One thread, because Slurm's tools may block for
+// minutes.
 #pragma once
 
 #include <chrono>

@@ -138,7 +138,7 @@ void FillPair(const PairGeometry& geometry, const PairMeasures& measures,
 
 void FillEnergy(const v1::EvaluatePairsRequest& request, const PairGeometry& geometry,
                 double epsilon, v1::EnergyAnalytics& energy) {
-  energy.set_epsilon(epsilon);
+  energy.set_epsilon(epsilon + 0.0);  // 0 for -0
   energy.set_phi(Phi(epsilon));
   energy.set_f(PairCollisionRate(epsilon));
   energy.set_j(PairEnergyCurrent(epsilon));
@@ -192,8 +192,8 @@ Violations Overflows(const v1::EvaluatePairsRequest& request,
       if (RatesAreInRange(point)) continue;
       violations.push_back(
           {Element("delta", i),
-           absl::StrCat(NumberText(point.delta()), " is too small at rho = ",
-                        NumberText(point.rho()),
+           absl::StrCat(NumberText(point.delta()),
+                        " is too small at rho = ", NumberText(point.rho()),
                         ": the collision rate or its inverse leaves the range of double")});
       break;
     }

@@ -43,6 +43,7 @@ async def watch_updates(connection: Connection, name: str) -> AsyncIterator[Upda
 
     Raises:
         Unavailable: the server did not answer for two minutes.
+        ResourceExhausted: the server was busy for two minutes.
         Error: any other error of the server.
     """
     watch = Attachments(name)

@@ -222,6 +222,7 @@ class Job:
 
         Raises:
             Unavailable: the server did not answer for two minutes. The job goes on.
+            ResourceExhausted: the server was busy for two minutes. The job goes on.
         """
         async for update in watch_updates(self._connection, self.name):
             if isinstance(update, Update):
@@ -236,7 +237,7 @@ class Job:
             >>> results = await asyncio.gather(*(job.result_async() for job in jobs))
 
         Raises:
-            JobFailed, JobCancelled, Unavailable: as `watch`.
+            JobFailed, JobCancelled, Unavailable, ResourceExhausted: as `watch`.
         """
         async for _ in self.updates():
             pass

@@ -80,7 +80,7 @@ def real_number(name: str, value: object) -> float:
 
     Raises:
         TypeError: not a number.
-        ValueError: an int that exceeds the doubles.
+        ValueError: an int beyond the range of double precision.
     """
     if isinstance(value, (bool, np.bool_)) or not _is_number(value):
         raise TypeError(f"{name} has to be a number, not {value!r}")

@@ -39,6 +39,8 @@ def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str
 def _with_flags(error: BaseException) -> str:
     """The message, with flags in place of the specification's fields: --rho for spec.grid.rho[0]."""
     message = str(error)
+    if isinstance(error, OSError) and error.strerror:
+        message = ": ".join(filter(None, [error.filename, error.strerror]))
     for field, _ in getattr(error, "violations", []):
         flag = re.sub(r"\[\d+\]$", "", field).rpartition(".")[2].replace("_", "-")
         message = message.replace(f"{field}:", f"--{flag}:")

@@ -88,9 +88,10 @@ class Progress:
         first = next(iter(Point(points[0]).estimates.values()), None) if points else None
         self._show(self._text if first is None else f"{self._text}  {first}")
 
-    def show_pause(self, pause: float) -> None:
+    def show_pause(self, is_busy: bool, pause: float) -> None:
         """Shows that the stream broke and that the next stream begins after `pause` seconds."""
-        self._show(f"{self._text}  no answer, retrying in {pause:.1f} s")
+        why = "server busy" if is_busy else "no answer"
+        self._show(f"{self._text}  {why}, retrying in {pause:.1f} s")
 
     def note(self, text: str) -> None:
         if self._bar is not None:

@@ -73,7 +73,7 @@ def watch_job(
         if watch.ended is not None:
             return watch.ended
         pause = watch.pause_after(why)
-        screen.show_pause(pause)
+        screen.show_pause(why.code == "RESOURCE_EXHAUSTED", pause)
         time.sleep(pause)
         connect_again(connection)
 

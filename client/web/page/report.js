@@ -27,8 +27,10 @@
     const leftOut = (job.progress?.points_done ?? 0) - points.length;
     return [
       outcomeText(job),
-      job.results_expired ? 'The results have expired; only the specification is kept.' : null,
-      leftOut > 0 ? `${countText(leftOut)} further points are not in this report.` : null,
+      job.results_expired || (leftOut > 0 && points.length === 0)
+        ? 'The results have expired; only the specification is kept.'
+        : null,
+      leftOut > 0 && points.length > 0 ? `${countText(leftOut)} further points are not in this report.` : null,
       points.length > pictured
         ? `The first ${pictured} of ${countText(points.length)} points have tables and pictures; all ` +
           'are in the table at the end.'

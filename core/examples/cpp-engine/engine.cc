@@ -24,7 +24,10 @@ int main() {
     const auto experiment = PointExperiment::Create(spec, i);
     const Estimate first = experiment->Summarize(FoldPoint(*experiment)).estimates.front();
     std::cout << "delta " << experiment->parameters()[kDelta] << ": " << first.name << " "
-              << first.value << " +- " << first.standard_error.value_or(0) << ", exactly "
-              << first.exact.value_or(0) << '\n';
+              << first.value;
+    // Too few samples have no standard error, and some estimates no exact value.
+    if (first.standard_error) std::cout << " +- " << *first.standard_error;
+    if (first.exact) std::cout << ", exactly " << *first.exact;
+    std::cout << '\n';
   }
 }

@@ -314,6 +314,7 @@ def test_every_figure_has_its_parts() -> None:
         (["--sead", "3"], "did you mean '--seed'?"),
         (["--quick", "--full"], "--full: not allowed with argument --quick"),
         (["--seed", "1.5"], "--seed has to be a whole number"),
+        (["--seed", "-1"], "--seed has to be from 0 to"),
         (["--delta", "0.1,0.2"], "--delta: '0.1,0.2' is not one number"),
         (["--delta", "0.9"], "delta is 0.9; permitted"),
     ],
@@ -337,6 +338,43 @@ def test_a_figure_without_its_name_or_folder_is_an_error(
 ) -> None:
     assert command.main(words) == 2
     assert text in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words,text",
+    [
+        (["stability", "--all-starts", "no"], "--all-starts has to be true or false, not 'no'"),
+        (["rates", "--orbits", "0"], "--orbits has to be from 1 to"),
+        (["conductivity", "--cells", "3x3"], "cells: 3x3 is a lattice; permitted: lengths of"),
+        (["temperature-profile", "--cells", "4,2x2"], "cells: 2x2 is a lattice"),
+        (["full-counting", "--cells", "4x2"], "cells: 4x2 is a lattice"),
+        (["full-counting", "--hot", "1", "--cold", "1"], "hot and cold have to differ"),
+    ],
+)
+def test_what_a_figure_cannot_draw_is_refused_before_it_is_measured(
+    words: list[str], text: str, home: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert command.main([*words, "--out", str(tmp_path)]) == 2
+    assert text in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_every_figure_can_be_edited(tmp_path: Path) -> None:
+    for name in figures.names():
+        assert command.main([name, "--edit", "--out", str(tmp_path)]) == 0
+        with pytest.raises(SystemExit):  # the help of the edited module
+            command.main([name, "--out", str(tmp_path), "--help"])
+
+
+def test_the_data_stay_if_the_picture_fails(
+    home: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command.main(["cell", "--edit", "--out", str(tmp_path)])
+    module = tmp_path / "cell.py"
+    module.write_text(module.read_text() + "\n\ndef draw(_):\n    raise ValueError('no picture')\n")
+    assert command.main(["cell", "--out", str(tmp_path)]) == 2
+    assert "no picture" in capsys.readouterr().err
+    assert list(tmp_path.glob("*.csv")) and not list(tmp_path.glob("*.svg"))
 
 
 def test_help_lists_the_variables_of_a_figure(capsys: pytest.CaptureFixture[str]) -> None:

@@ -57,7 +57,7 @@ def test_an_interruption_ends_the_conversion_to_arrays(
     home: Home, first_hits: ballpiston.Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     python = tmp_path / "python3"
-    python.write_text('#!/bin/sh\n[ "$1" = -c ] || { echo started; sleep 5; echo late; }\n')
+    python.write_text('#!/bin/sh\n[ "$1" = -c ] || { echo started; sleep 60; echo late; }\n')
     python.chmod(0o700)
     monkeypatch.setenv("BALLPISTON_PYTHON", str(python))
     words = ("result", first_hits.job_name, "--save", str(tmp_path / "a.npz"))

@@ -128,7 +128,7 @@ def test_a_bar_shows_points_an_estimate_and_lost_connections() -> None:
     estimate.standard_error = 0.123
     progress.show(message)
     progress.show(ensemble_pb2.WatchEnsembleJobResponse(heartbeat={}))
-    progress.show_pause(0.2)
+    progress.show_pause(False, 0.2)
     assert bar.lines == [
         (0.25, "1/4 points  mean_hit_time 57.66 ± 0.12"),
         (0.25, "1/4 points  no answer, retrying in 0.2 s"),

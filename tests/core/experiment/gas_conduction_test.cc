@@ -256,8 +256,9 @@ TEST(GasConduction, BesideAColdReservoirABilliardWarmsUpLonger) {
   }
 }
 
-// The store keeps the states of all groups in a value of at most 10^9 bytes. A lattice of two rows
-// has three pistons for two balls, and a billiard four numbers for a ball and two for a piston.
+// The store keeps the states of all groups in a value of at most 10^9 bytes. A wide lattice has two
+// pistons for each ball, and a billiard four numbers for a ball and two for a piston: 16 groups of
+// 10^6 cells would take 1.02e9 bytes.
 TEST(GasConduction, TheStatesOfALargeGasFitIntoTheStore) {
   const auto groups = [](Model model, int64_t columns) {
     const EnsembleSpec spec = SpecBetween(2, 1, {columns, 2, true}, model);

@@ -324,8 +324,9 @@ TEST(Ladder, ABudgetBelowTheFirstSamplesIsRejectedWithTheLeastBudget) {
               2 * least, 1e-3 * least);
   const auto found =
       MachineViolations(Asked("equilibrium delta=1e-9 budget=1e6 model=billiard"), InLanes24());
-  EXPECT_THAT(found, ElementsAre(Field(&FieldViolation::description,
-                                       HasSubstr("none, because they take longer than"))));
+  EXPECT_THAT(found, ElementsAre(Field(
+                         &FieldViolation::description,
+                         HasSubstr("no budget, because the first samples take longer than"))));
 }
 
 // AUTO takes the jump process if the billiard has no samples within the budget.

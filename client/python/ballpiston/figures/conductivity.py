@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, answer, first
+from ballpiston.figures.parts.asking import RHO, answer, check_chains, first
 from ballpiston.figures.parts.tables import Table, Tables, estimates, rows
 from ballpiston.parameter_lists import Numbers, Shapes
 
@@ -35,6 +35,8 @@ def measure(
 ) -> Tables:
     """Estimates of the billiard at each delta, in a ring of `billiard_cells`, and of the jump
     process, the limit delta -> 0, in each ring of `cells`. Samples are replicas of a ring."""
+
+    check_chains("cells", cells)
 
     def gas(model: str, delta: Numbers, cells: Shapes, samples: float) -> Table:
         question = {"rho": rho, "delta": delta, "cells": cells, "temperature": 1, "seed": seed}

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
-from ballpiston.figures.parts.asking import RHO, answer
+from ballpiston.figures.parts.asking import RHO, answer, check_chains
 from ballpiston.figures.parts.charge import combined
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, rows, table
 from ballpiston.parameter_lists import Shapes
@@ -45,6 +45,9 @@ def measure(
     seed: int = 0,
 ) -> Tables:
     """The scaled cumulants of each chain, from `collisions` exchanges, and their extrapolations."""
+    check_chains("cells", cells)
+    if hot == cold:
+        raise ValueError(f"hot and cold have to differ; both are {hot:g}")
     question = {"rho": rho, "delta": delta, "cells": cells, "hot": hot, "cold": cold}
     question |= {"model": "markov", "collisions": collisions, "seed": seed}
     result = answer(client, "gas-conduction", **question)

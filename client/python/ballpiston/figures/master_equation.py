@@ -128,5 +128,5 @@ def _draw_law(upper: Any, lower: Any, law: Table, series: list[Any]) -> None:
 
 def _share_of_start(law: Table, start: float) -> float:
     """The exact probability of the bin of the start energy."""
-    there = (law["lower"] <= start) & (start < law["upper"])
-    return float(np.sum((law["exact"] * (law["upper"] - law["lower"]))[there]))
+    there = np.searchsorted(law["lower"], start, "right") - 1
+    return float((law["exact"] * (law["upper"] - law["lower"]))[there])

@@ -11,6 +11,7 @@ minutes on one core, else some seconds, with a small part of the starts.
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from typing import Any
@@ -57,7 +58,8 @@ _LINE = 25  # height of a line, in pixels
 def measure(*, all_starts: bool = False) -> Tables:
     """The counts of all situations and methods, and in `failures` the sum of all kinds."""
     arguments = [] if all_starts else ["--quick"]
-    return {"stability": counts(output_of("stability", *arguments, quiet=not sys.stderr.isatty()))}
+    quiet = os.environ.get("BALLPISTON_PROGRESS") in ("none", "json") or not sys.stderr.isatty()
+    return {"stability": counts(output_of("stability", *arguments, quiet=quiet))}
 
 
 def counts(report: str) -> Table:

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, answer
+from ballpiston.figures.parts.asking import RHO, answer, check_chains
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, curves, distinct, pick, rows
 from ballpiston.parameter_lists import Shapes
 
@@ -44,6 +44,7 @@ def measure(
     fifty times as much as the jump process."""
 
     def profile(model: str, samples: float) -> Table:
+        check_chains("cells", cells)
         question = {"rho": rho, "delta": delta, "cells": cells, "hot": hot, "cold": cold}
         question |= {"model": model, "samples": samples, "seed": seed}
         return curves(answer(client, "gas-conduction", **question), "temperature_profile")

@@ -13,7 +13,7 @@ import numpy as np
 from ballpiston.client import Client
 from ballpiston.figures.parts.tables import Table, table
 from ballpiston.job import Job
-from ballpiston.parameter_lists import Numbers, number_list
+from ballpiston.parameter_lists import Numbers, Shapes, number_list, shape_list
 from ballpiston.result import Result
 from ballpiston.specification import specification
 
@@ -83,6 +83,13 @@ def in_mean_free_times(client: Client, curves: Table) -> Table:
 def first(name: str, values: Numbers) -> float:
     """Of a list: where the answer does not depend on the parameter, one value is enough."""
     return number_list(name, values)[0]
+
+
+def check_chains(name: str, cells: Shapes) -> None:
+    """Raises ValueError if one of the shapes is a lattice."""
+    for shape in shape_list(name, cells):
+        if "x" in shape:
+            raise ValueError(f"{name}: {shape} is a lattice; permitted: lengths of chains")
 
 
 def start_of(client: Client, **orbit: Any) -> dict[str, Any]:

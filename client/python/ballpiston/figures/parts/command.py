@@ -21,7 +21,7 @@ from ballpiston.document import write_atomically
 from ballpiston.figures import names
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.tables import Tables
-from ballpiston.parameter_lists import number_list, whole_number
+from ballpiston.parameter_lists import INT64, UINT64, number_list, whole_number
 from ballpiston.program import run_program
 from ballpiston.suggestion import did_you_mean
 from ballpiston.table_file import write_table
@@ -125,7 +125,7 @@ def _run(options: Namespace, module: ModuleType) -> list[Path]:
             data = module.measure(client, **keywords)
     else:
         data = module.measure(**keywords)
-    return _written(options, data, module.draw(data), keywords)
+    return _written(options, module, data, keywords)
 
 
 def _copied(name: str, folder: Path) -> Path:
@@ -154,9 +154,10 @@ def _module(name: str, folder: Path | None) -> ModuleType:
             "installed file",
             file=sys.stderr,
         )
-    found = importlib.util.spec_from_file_location(own.stem, own)
+    found = importlib.util.spec_from_file_location(f"own_{own.stem}", own)
     assert found is not None and found.loader is not None
     module = importlib.util.module_from_spec(found)
+    sys.modules[module.__name__] = module  # dataclasses look it up
     found.loader.exec_module(module)
     return module
 
@@ -172,24 +173,32 @@ def _keywords(module: ModuleType, options: Namespace) -> dict[str, Any]:
 
 
 def _value(flag: str, text: str, kind: str) -> Any:
-    """A list of numbers stays as it was written; the client reads it."""
-    if kind == "int" and text.isdecimal():
-        return int(text)  # a seed may have more digits than a float
+    """A list of numbers stays as it was written; the client reads it. Counts are at least 1."""
+    if kind == "bool":
+        if text not in ("true", "false"):
+            raise ValueError(f"{flag} has to be true or false, not {text!r}")
+        return text == "true"
     if kind not in ("float", "int"):
         return text
-    values = number_list(flag, text)
+    # A seed may have more digits than a float.
+    is_whole = kind == "int" and text.isdecimal()
+    values: list[float] = [int(text)] if is_whole else number_list(flag, text)
     if len(values) != 1:
         raise ValueError(f"{flag}: {text!r} is not one number")
-    return whole_number(flag, values[0]) if kind == "int" else values[0]
+    bounds = UINT64 if flag == "--seed" else (1, INT64[1])
+    return whole_number(flag, values[0], *bounds) if kind == "int" else values[0]
 
 
-def _written(options: Namespace, data: Tables, figure: Any, keywords: dict[str, Any]) -> list[Path]:
-    """The pictures last: where they are, the data are too."""
+def _written(
+    options: Namespace, module: ModuleType, data: Tables, keywords: dict[str, Any]
+) -> list[Path]:
+    """The pictures last: where they are, the data are too; and the data stay if `draw` fails."""
     comment = f"ballpiston {ballpiston.__version__}: figure {options.name} {json.dumps(keywords)}"
     paths = []
     for name, table in data.items():
         paths.append(options.out / f"{name}.csv")
         write_table(paths[-1], table, comment)
+    figure = module.draw(data)
     for ending in ("png", "svg"):
         paths.append(options.out / f"{options.name}.{ending}")
         style.save(figure, paths[-1])
