@@ -81,6 +81,16 @@ TEST(OrbitsOnDevice, GoOnInTheLanesWhenTheDeviceFails) {
   }
 }
 
+TEST(OrbitsOnDevice, PauseEndsARun) {
+  class Pauses : public OrbitsOf {
+   public:
+    using OrbitsOf::OrbitsOf;
+    bool Pause() override { return true; }
+  };
+  OrbitsOnDevice device(std::make_unique<HostDevice>(64), 1, [](const absl::Status&) {});
+  EXPECT_FALSE(Pauses(kPaperPair, 300, 4, &device).Run(Engine::kLanes, kPaperPair, 300));
+}
+
 TEST(OrbitsOnDevice, AFailureIsReportedOnceAndNoLaterRunUsesTheDevice) {
   int failures = 0;
   OrbitsOnDevice device(std::make_unique<HostDevice>(64, HostFaults{.land = 0}), 1,
