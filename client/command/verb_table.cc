@@ -512,8 +512,9 @@ std::vector<Verb> AllVerbs() {
       {"sample",
        "write the collisions of a point's samples to a file",
        "A row for each ball-piston collision: sample, times, place, velocities before and after, "
-       "energies. They are the collisions that `run` with the same flags averages. One point, of "
-       "an experiment with a pair. .npz and .parquet need Python with the package ballpiston. "
+       "energies. They are the collisions that `run --verify` with the same flags averages. One "
+       "point, of an experiment with a pair except lyapunov, by a billiard, with samples or "
+       "collisions. .npz and .parquet need Python with the package ballpiston. "
        "Prints the path of the file. proto/ballpiston/v1/trace.proto describes the columns.",
        {kExperiment},
        With(kQuestion, {&kTableFile, &kServer}),
