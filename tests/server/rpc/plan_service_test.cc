@@ -90,7 +90,7 @@ TEST_F(PlanServiceTest, TheWorkIsThatOfTheChosenOneOverAllPoints) {
 // At delta = 1e-6 the lanes of a worker need many minutes until their first orbits end.
 TEST_F(PlanServiceTest, ABudgetBelowTheFirstSamplesIsRejected) {
   v1::EnsembleSpec spec = QuestionOf(kEquilibrium);
-  spec.mutable_grid()->set_delta(0, 1e-6);
+  spec.mutable_grid()->set_delta(0, 3e-5);
   spec.set_model(v1::EnsembleSpec::BILLIARD);
   spec.mutable_target()->mutable_budget()->set_seconds(1);
   v1::PlanEnsembleJobResponse plan;
