@@ -87,7 +87,7 @@ TEST_F(PlanServiceTest, TheWorkIsThatOfTheChosenOneOverAllPoints) {
   EXPECT_EQ(server_->List().jobs_size(), 0);  // a plan creates no job
 }
 
-// At delta = 1e-6 the lanes of a worker need many minutes until their first orbits end.
+// At delta = 3e-5 the lanes of a worker need more than a minute until their first orbits end.
 TEST_F(PlanServiceTest, ABudgetBelowTheFirstSamplesIsRejected) {
   v1::EnsembleSpec spec = QuestionOf(kEquilibrium);
   spec.mutable_grid()->set_delta(0, 3e-5);
