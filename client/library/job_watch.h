@@ -10,6 +10,7 @@
 // Properties, each with a test of its name:
 //   1. PassesTheLastResumeTokenOn.     2. ShowsTheTerminalStateOnce.
 //   3. GivesUpAfterTheConfiguredTime.  4. AStopEndsTheWatchAtOnce.
+//   5. WaitsForABusyServer.            6. ReturnsTheErrorOfAServerThatStaysBusy.
 #pragma once
 
 #include <functional>
