@@ -105,7 +105,7 @@ struct SteadyTimes {
   double stretch = 0;      // at mean temperature 1
 };
 
-// Of a trajectory of a billiard; those of the jump process are smaller.
+// The bytes of the state of a billiard's trajectory. A state of the jump process has fewer.
 double StateBytes(const GasGeometry& geometry) {
   return 8 *
          (4 * static_cast<double>(geometry.balls()) + 2 * static_cast<double>(geometry.pistons()));
@@ -451,17 +451,16 @@ void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& 
 
 // The memory includes three copies of the states of all groups: merged, arriving and being written.
 Forecast ForecastOfGasConduction(Model model, const PointParameters& point) {
-  constexpr double kCopies = 3, kBytesOfACell = 80;
+  constexpr double kCopies = 3;
   const GasGeometry geometry = OpenGasOf(point);
   const SteadyTimes times = TimesAt(model, point);
   SampleWork work = WorkOfReplica(model, geometry, times.stretch);
   work.together = static_cast<double>(times.trajectories.each);
   const auto contacts = static_cast<double>(geometry.contacts());
   const auto trajectories = static_cast<double>(times.trajectories.count());
-  const auto cells = static_cast<double>(geometry.shape().cells());
   return {.work = work,
           .collisions = contacts * InfiniteGasExchangeRate(geometry, 1) * times.stretch,
-          .memory = MemoryOfReplicas(model, point) + kCopies * kBytesOfACell * trajectories * cells,
+          .memory = MemoryOfReplicas(model, point) + kCopies * trajectories * StateBytes(geometry),
           .trajectories = times.trajectories};
 }
 

@@ -161,7 +161,9 @@ class JobBook {
   Scheduler& scheduler_;
   const std::shared_ptr<CrashRecord> crashes_;
   ActiveJobs active_;
-  Mutex telling_;  // so that the scheduler is told the rows in the order of their changes
+  // Held from the reading of a job's row until the scheduler knows what the row says. So the
+  // scheduler never gets an older row after a newer one.
+  Mutex telling_;
   absl::Status limits_failure_;  // of the last call of KeepLimits
 };
 

@@ -222,7 +222,7 @@ void AddViolations(std::vector<FieldViolation> found, CheckedSpec& checked) {
   }
 }
 
-void AddDefaults(v1::EnsembleSpec& message) {
+void Normalize(v1::EnsembleSpec& message) {
   DropSignsOfZeros(message);
   // The order of the names means nothing.
   if (message.grid().table_size() > 1) std::ranges::sort(*message.mutable_grid()->mutable_table());

@@ -25,7 +25,7 @@ void AddViolations(std::vector<FieldViolation> found, CheckedSpec& checked);
 
 // Makes equal questions equal messages: writes the experiment's default values into empty lists of
 // the grid, 0 for -0, and the names of a table's columns in order.
-void AddDefaults(v1::EnsembleSpec& message);
+void Normalize(v1::EnsembleSpec& message);
 
 // Parses the name of a shape. INVALID_ARGUMENT quotes at most the beginning of the text.
 absl::StatusOr<GasShape> ShapeOfText(const std::string& text);

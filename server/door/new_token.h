@@ -24,8 +24,7 @@ absl::StatusOr<TokenRequest> ParseTokenRequest(absl::string_view text);
 // Appends the token's entry to the access file and returns the token when the entry is on disk.
 // Creates the file (mode 0600) if it does not exist. Rejects a file that is not an access file or
 // that other users can read. On an error, also if the disk is full, the file is unchanged, or
-// empty if it did not exist.
-// Concurrent calls wait for each other.
+// empty if it did not exist. Concurrent calls wait for each other.
 absl::StatusOr<std::string> IssueToken(const NamedFile& file, const TokenRequest& request,
                                        absl::Time now);
 

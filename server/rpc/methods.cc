@@ -38,7 +38,7 @@ absl::StatusOr<v1::EnsembleJob> CreateEnsembleJob(ServiceContext& service, const
   accepted.set_request_id(check.RequestId(request.request_id()));
   check.Priority("priority", request.priority());
   check.LabelsIn("labels", request.labels());
-  AddDefaults(*accepted.mutable_spec());
+  Normalize(*accepted.mutable_spec());
   CheckedSpec spec = CheckSpec(accepted.spec());
   if (spec.violations.empty()) AddViolations(service.ladder.ViolationsHere(spec.spec), spec);
   const absl::Status checked = Check(spec, check);

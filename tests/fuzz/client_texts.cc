@@ -28,8 +28,8 @@ void CheckSpecFile(const std::string& json) {
   if (printed == "null") return;  // a budget beyond what JSON has
   absl::StatusOr<v1::EnsembleSpec> again = client::ParseSpec("FILE", printed);
   Require(again.ok(), "what is printed can be read");
-  server::AddDefaults(*again);  // which drops the signs of zeros, as the reader does of -0
-  server::AddDefaults(*spec);
+  server::Normalize(*again);  // which drops the signs of zeros, as the reader does of -0
+  server::Normalize(*spec);
   Require(server::DeterministicBytes(*again) == server::DeterministicBytes(*spec),
           "the parsed specification equals the printed one");
 }

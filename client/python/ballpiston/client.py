@@ -29,7 +29,7 @@ from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trac
 
 _COLLECTION = "ensembleJobs/"
 _PAGE = 1000
-# Of submit and run, beside those of the question.
+# The keywords that submit and run have beside those of the question.
 _JOB_KEYWORDS = ("fresh", "priority", "request_id", "labels", "progress")
 
 

@@ -50,7 +50,7 @@ TEST_F(ChildProcessTest, StartsWithNoSignalBlocked) {
   pthread_sigmask(SIG_SETMASK, &old, nullptr);
 }
 
-// As under nohup.
+// `nohup` starts this program with SIGHUP ignored, so that its commands go on after a logout.
 TEST_F(ChildProcessTest, IgnoresSighupIfThisProgramDoes) {
   const auto old = signal(SIGHUP, SIG_IGN);
   EXPECT_EQ(RunShell("kill -HUP $$; echo survived"), 0);

@@ -105,7 +105,7 @@ TEST(Spec, ATooLongListOfShapesIsNotParsed) {
 TEST(Spec, EmptyListsGetDefaultValuesAndZerosLoseTheirSigns) {
   const auto with_defaults = [](const std::string& text) {
     v1::EnsembleSpec spec = SpecOfText(text);
-    AddDefaults(spec);
+    Normalize(spec);
     return spec.ShortDebugString();
   };
   EXPECT_EQ(with_defaults(kGas), SpecOfText(kGas + "grid { temperature: 1 }").ShortDebugString());

@@ -173,7 +173,8 @@ def _keywords(module: ModuleType, options: Namespace) -> dict[str, Any]:
 
 
 def _value(flag: str, text: str, kind: str) -> Any:
-    """A list of numbers stays as it was written; the client reads it. Counts are at least 1."""
+    """The value of a flag. A list of numbers stays a text, which the client reads. A whole number has
+    to be at least 1; only the seed may be 0."""
     if kind == "bool":
         if text not in ("true", "false"):
             raise ValueError(f"{flag} has to be true or false, not {text!r}")
