@@ -79,4 +79,18 @@ Interrupts::Scope::~Scope() {
   interrupts_->farewell_ = outer_;
 }
 
+absl::StatusOr<int> RunInterruptible(const ChildProcess& child, Interrupts* interrupts,
+                                     const std::function<void(pid_t)>& stop) {
+  absl::StatusOr<pid_t> pid;
+  std::mutex mutex;
+  std::unique_lock starting(mutex);  // an interruption waits until the child's id is known
+  const Interrupts::Scope scope(interrupts, [&] {
+    const std::lock_guard started(mutex);
+    if (pid.ok()) stop(*pid);
+  });
+  pid = StartChild(child);
+  starting.unlock();
+  return pid.ok() ? WaitForChild(*pid) : pid.status();
+}
+
 }  // namespace ballpiston::client

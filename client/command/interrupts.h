@@ -11,6 +11,9 @@
 #include <mutex>
 #include <thread>
 
+#include "absl/status/statusor.h"
+#include "client/library/child_process.h"
+
 namespace ballpiston::client {
 
 class Interrupts {
@@ -45,5 +48,10 @@ class Interrupts {
   const std::function<void()>* farewell_ = nullptr;
   std::thread thread_;
 };
+
+// Starts the child and waits for its end, as RunChild does. If the program is interrupted
+// meanwhile, `stop` gets the child's id.
+absl::StatusOr<int> RunInterruptible(const ChildProcess& child, Interrupts* interrupts,
+                                     const std::function<void(pid_t)>& stop);
 
 }  // namespace ballpiston::client

@@ -81,16 +81,14 @@ VerbResult RunPythonProgram(const std::string& module, const std::vector<std::st
   terminal.out.flush();
   std::vector<std::string> words = {"-m", module};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  const absl::StatusOr<pid_t> pid =
-      StartChild({.command = PythonCommand(words), .own_group = true});
-  if (!pid.ok()) return pid.status();
-  const Interrupts::Scope scope(terminal.interrupts, [&] {
-    kill(-*pid, SIGINT);
-    WaitForChild(*pid).IgnoreError();
+  const auto stop = [&terminal](pid_t pid) {
+    kill(-pid, SIGINT);
+    WaitForChild(pid).IgnoreError();
     terminal.err << (isatty(STDERR_FILENO) ? "\r\x1b[K" : "")
                  << "The file is not finished: run the same command again.\n";
-  });
-  const absl::StatusOr<int> status = WaitForChild(*pid);
+  };
+  const absl::StatusOr<int> status = RunInterruptible(
+      {.command = PythonCommand(words), .own_group = true}, terminal.interrupts, stop);
   if (!status.ok()) return status.status();
   return ExitCodeOf(*status);
 }

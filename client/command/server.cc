@@ -77,11 +77,9 @@ absl::Status MakeFolder(const std::string& folder) {
 VerbResult RunBallpistond(std::vector<std::string> flags, const Terminal& terminal) {
   flags.insert(flags.begin(), UsualServerProgram());
   terminal.Detail(absl::StrJoin(flags, " "));
-  const auto pid = StartChild({.command = std::move(flags), .folder = "", .output = ""});
-  if (!pid.ok()) return absl::FailedPreconditionError(pid.status().message());
-  const Interrupts::Scope scope(terminal.interrupts, [&] { kill(*pid, SIGTERM); });
-  const absl::StatusOr<int> status = WaitForChild(*pid);
-  if (!status.ok()) return status.status();
+  const absl::StatusOr<int> status = RunInterruptible(
+      {.command = std::move(flags)}, terminal.interrupts, [](pid_t pid) { kill(pid, SIGTERM); });
+  if (!status.ok()) return absl::FailedPreconditionError(status.status().message());
   return ExitCodeOf(*status);
 }
 

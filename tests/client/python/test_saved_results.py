@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 import math
 import os
+import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import FIRST_HITS, Home
+from conftest import FIRST_HITS, LIMIT, Home
 from google.protobuf import json_format
 
 import ballpiston
@@ -50,6 +51,22 @@ def test_the_command_line_saves_the_same_arrays(home: Home, tmp_path: Path) -> N
         assert sorted(saved) == sorted(arrays)
         for name in arrays:
             np.testing.assert_array_equal(saved[name], arrays[name], name)
+
+
+def test_an_interruption_ends_the_conversion_to_arrays(
+    home: Home, first_hits: ballpiston.Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    python = tmp_path / "python3"
+    python.write_text('#!/bin/sh\n[ "$1" = -c ] || { echo started; sleep 60; echo late; }\n')
+    python.chmod(0o700)
+    monkeypatch.setenv("BALLPISTON_PYTHON", str(python))
+    words = ("result", first_hits.job_name, "--save", str(tmp_path / "a.npz"))
+    command = [str(home.programs / "ballpiston"), *words]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as client:
+        assert client.stdout is not None and client.stdout.readline() == "started\n"
+        client.terminate()
+        assert client.communicate(timeout=LIMIT)[0] == ""
+    assert client.returncode == 130 and list(tmp_path.iterdir()) == [python]
 
 
 def test_an_archive_has_the_arrays_of_the_result(
