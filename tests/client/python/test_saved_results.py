@@ -57,16 +57,15 @@ def test_an_interruption_ends_the_conversion_to_arrays(
     home: Home, first_hits: ballpiston.Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     python = tmp_path / "python3"
-    python.write_text('#!/bin/sh\n[ "$1" = -c ] || { echo started; sleep 60; echo late; }\n')
+    python.write_text('#!/bin/sh\n[ "$1" = -c ] || { kill $PPID; sleep 60; echo late; }\n')
     python.chmod(0o700)
     monkeypatch.setenv("BALLPISTON_PYTHON", str(python))
     words = ("result", first_hits.job_name, "--save", str(tmp_path / "a.npz"))
-    command = [str(home.programs / "ballpiston"), *words]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as client:
-        assert client.stdout is not None and client.stdout.readline() == "started\n"
-        client.terminate()
-        assert client.communicate(timeout=LIMIT)[0] == ""
-    assert client.returncode == 130 and list(tmp_path.iterdir()) == [python]
+    command = [home.programs / "ballpiston", *words]
+    # Returns when no process has the standard output any more.
+    client = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=LIMIT, check=False)
+    assert (client.returncode, client.stdout) == (130, "")
+    assert list(tmp_path.iterdir()) == [python]
 
 
 def test_an_archive_has_the_arrays_of_the_result(
