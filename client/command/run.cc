@@ -89,8 +89,9 @@ std::string ReusedText(const v1::EnsembleJob& job) {
                         " (--fresh computes it again)");
   }
   if (job.continues().empty()) return "";
-  return absl::StrCat("continues ", job.continues(), ": ", ExactText(job.continued_samples()),
-                      " samples are in the store (--fresh computes them again)");
+  return absl::StrCat("continues ", job.continues(), ": what it needs of the ",
+                      ExactText(job.continued_samples()),
+                      " stored samples is not computed again (--fresh computes all)");
 }
 
 // ---- result ----
