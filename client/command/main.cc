@@ -1,12 +1,10 @@
-#include <unistd.h>
-
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <iostream>
 
 #include "client/command/command_line.h"
 #include "client/command/interrupts.h"
+#include "client/output/progress_reporter.h"
 #include "client/output/standard_output.h"
 
 namespace {
@@ -14,17 +12,17 @@ namespace {
 // See https://no-color.org.
 bool HasColour() {
   const char* const refused = std::getenv("NO_COLOR");
-  const char* const terminal = std::getenv("TERM");
   if (refused != nullptr && refused[0] != '\0') return false;
-  return isatty(STDERR_FILENO) && terminal != nullptr && std::strcmp(terminal, "dumb") != 0;
+  return ballpiston::client::HasTerminal();
 }
 
 }  // namespace
 
-// A closed pipe makes a write fail (standard_output.h); it raises no signal.
+// A closed pipe and a limit on files' sizes make a write fail (standard_output.h); no signal ends
+// the program.
 int main(int argc, char** argv) {
   using ballpiston::client::ExitCode;
-  std::signal(SIGPIPE, SIG_IGN);
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
   setenv("GRPC_VERBOSITY", "NONE", 0);  // this program prints the errors itself
   ballpiston::client::Interrupts interrupts;
   ballpiston::client::StandardOutput out;

@@ -64,10 +64,11 @@ void SetEnvironment(const Options& options) {
   set("BALLPISTON_PROGRESS", WordOf(StyleOf(options), kProgressStyles));
 }
 
-// The command that runs the interpreter with these arguments. Adds the package to PYTHONPATH of
-// this process, which the interpreter inherits.
+// The command that runs the interpreter with these arguments. The interpreter inherits where it
+// finds modules: first in the package, and not in the working folder, which may have a random.py.
 std::vector<std::string> PythonCommand(const std::vector<std::string>& arguments) {
-  static const int kOnce [[maybe_unused]] = setenv("PYTHONPATH", PythonPath().c_str(), 1);
+  static const int kOnce [[maybe_unused]] =
+      setenv("PYTHONPATH", PythonPath().c_str(), 1) + setenv("PYTHONSAFEPATH", "1", 1);
   std::vector<std::string> command = {Interpreter()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return command;
@@ -83,13 +84,18 @@ VerbResult RunPythonProgram(const std::string& module, const std::vector<std::st
   words.insert(words.end(), arguments.begin(), arguments.end());
   const auto stop = [&terminal](pid_t pid) {
     kill(-pid, SIGINT);
-    WaitForChild(pid).IgnoreError();
     terminal.err << (isatty(STDERR_FILENO) ? "\r\x1b[K" : "")
                  << "The file is not finished: run the same command again.\n";
+    WaitForChild(pid).IgnoreError();
   };
   const absl::StatusOr<int> status = RunInterruptible(
       {.command = PythonCommand(words), .own_group = true}, terminal.interrupts, stop);
   if (!status.ok()) return status.status();
+  if (*status > 128 && *status != static_cast<int>(ExitCode::kInterrupted)) {
+    return absl::InternalError(
+        absl::StrCat(Interpreter(), " was ended by signal ", *status - 128,
+                     *status == 128 + SIGKILL ? ", perhaps because it needs too much memory" : ""));
+  }
   return ExitCodeOf(*status);
 }
 

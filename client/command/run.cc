@@ -140,12 +140,12 @@ class Destination {
   // `options` must have passed CheckSave.
   Destination(const Options& options, Terminal& terminal) : options_(options), terminal_(terminal) {
     if (!options.save.empty()) file_.emplace("--save", options.save);
-    writer_ = NewResultWriter(FormatOf(options), file_ ? file_->out() : terminal.out,
-                              /*is_file=*/file_.has_value());
+    writer_ = NewResultWriter(FormatOf(options), out(), /*is_file=*/file_.has_value());
   }
 
   v1::ListResultsRequest::View view() const { return ViewFor(FormatOf(options_)); }
   ResultWriter& writer() { return *writer_; }
+  bool accepts() { return out().good(); }  // no write failed, nobody closed the pipe
 
   // Prints the path of the file, once the file is complete.
   absl::Status Finish() {
@@ -162,6 +162,8 @@ class Destination {
   }
 
  private:
+  std::ostream& out() { return file_ ? file_->out() : terminal_.out; }
+
   const Options& options_;
   Terminal& terminal_;
   std::optional<NewFile> file_;
@@ -194,7 +196,7 @@ absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& jo
       AddPoint(point, destination.writer(), err);
     }
     token = page->next_page_token();
-  } while (!token.empty());
+  } while (!token.empty() && destination.accepts());
   return absl::OkStatus();
 }
 
@@ -295,12 +297,14 @@ VerbResult Result(const Options& options, Terminal& terminal) {
           return TooMany(names.size());
         }
         ExitCode worst = ExitCode::kDone;
+        absl::Status missing;
         for (const std::string& name : names) {
           const VerbResult result = PrintResult(connection, name, options, terminal);
-          if (!result.ok()) return result;
-          worst = std::max(worst, *result);
+          if (!result.ok() && !absl::IsNotFound(result.status())) return result;
+          missing.Update(result.status());
+          if (result.ok()) worst = std::max(worst, *result);
         }
-        return worst;
+        return missing.ok() ? VerbResult(worst) : missing;
       });
 }
 

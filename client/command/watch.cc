@@ -44,7 +44,10 @@ VerbResult WatchSeveral(const Connection& connection, const std::vector<std::str
   ExitCode worst = ExitCode::kDone;
   std::stop_source enough;
   const auto watch = [&](const std::string& name) {
-    const Ended job = connection.client.Watch(name, {}, {}, enough.get_token());
+    Ended job;
+    do {  // as long as the server has too many streams
+      job = connection.client.Watch(name, {}, {}, enough.get_token());
+    } while (ErrorReason(job.status()) == "TOO_MANY_STREAMS" && !enough.stop_requested());
     const std::lock_guard lock(mutex);
     if (enough.stop_requested()) return;
     if (options.any) enough.request_stop();

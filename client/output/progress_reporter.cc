@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
+#include <cstring>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "client/output/json.h"
 #include "client/output/number_text.h"
 #include "client/output/spelling.h"
@@ -27,7 +29,12 @@ size_t TerminalWidth() {
 
 ProgressStyle Resolved(ProgressStyle style) {
   if (style != ProgressStyle::kAuto) return style;
-  return isatty(STDERR_FILENO) ? ProgressStyle::kBar : ProgressStyle::kNone;
+  return HasTerminal() ? ProgressStyle::kBar : ProgressStyle::kNone;
+}
+
+// Of a clock that nobody sets and that does not run while the machine sleeps.
+absl::Time Now() {
+  return absl::UnixEpoch() + absl::FromChrono(std::chrono::steady_clock::now().time_since_epoch());
 }
 
 // The work of a job, written as in a plan. A restarted server does not know the earlier work.
@@ -36,6 +43,11 @@ std::string WorkText(double work) {
 }
 
 }  // namespace
+
+bool HasTerminal() {
+  const char* const terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) && terminal != nullptr && std::strcmp(terminal, "dumb") != 0;
+}
 
 ProgressReporter::ProgressReporter(ProgressStyle style, std::ostream& err, absl::string_view name)
     : style_(Resolved(style)), err_(err) {
@@ -47,13 +59,13 @@ void ProgressReporter::OnJob(const v1::EnsembleJob& job) {
   if (style_ == ProgressStyle::kBar && !named_) WriteLines(job.name());
   named_ = true;
   job_ = job;
-  meter_.Update(job.progress(), absl::Now());
+  meter_.Update(job.progress(), Now());
   Show({});
 }
 
 void ProgressReporter::OnSnapshot(const v1::StatisticsSnapshot& snapshot) {
   const std::lock_guard lock(mutex_);
-  meter_.Update(snapshot.progress(), absl::Now());
+  meter_.Update(snapshot.progress(), Now());
   // The points of an ended job come before the message that has its state, and a snapshot may come
   // before the message that the job has begun.
   const bool has_begun = snapshot.progress().points_done() > 0 || snapshot.progress().samples() > 0;

@@ -25,9 +25,12 @@ namespace ballpiston::client {
 
 enum class ProgressStyle { kAuto, kBar, kJson, kNone };
 
+// Standard error is a terminal that has colours and can draw over a line.
+bool HasTerminal();
+
 class ProgressReporter {
  public:
-  // kAuto is kBar if standard error is a terminal, else kNone. `name` is the job's name. `err` must
+  // kAuto is kBar with such a terminal, else kNone. `name` is the job's name. `err` must
   // outlive the reporter.
   ProgressReporter(ProgressStyle style, std::ostream& err, absl::string_view name);
 

@@ -105,6 +105,17 @@ TEST_F(CommandLineTest, AWatchOfAnyJobEndsWithTheFirst) {
   EXPECT_EQ(outcome, (Outcome{0, "ensembleJobs/abc succeeded\n", ""}));
 }
 
+// The points are many requests. Nobody reads them after the first error.
+TEST_F(CommandLineTest, AResultThatNobodyReadsIsNotFetched) {
+  server_.ensemble.points.resize(7);
+  server_.Start();
+  std::ostream closed(nullptr);
+  std::ostringstream err;
+  Terminal terminal{.out = closed, .err = err};
+  RunCommandLine({"result", "abc", "--format", "jsonl", "--server", server_.Address()}, terminal);
+  EXPECT_THAT(server_.ensemble.Asked().results, testing::SizeIs(1)) << err.str();
+}
+
 TEST_F(CommandLineTest, AFigureWithoutItsNameIsAnErrorWithoutPython) {
   const ScopedVariable program("BALLPISTON_PYTHON", "/bin/false");
   EXPECT_THAT(Ballpiston({"figure", "--list"}).out,
@@ -121,7 +132,7 @@ TEST_F(CommandLineTest, AFigureStartsPythonAndReturnsItsExitCode) {
   const std::string python = home_.File("python");
   WriteFile(python,
             "#!/bin/sh\n[ \"$1\" = -c ] && exit 0  # the check of its modules\n"
-            "echo \"$*\" $BALLPISTON_SERVER >" +
+            "echo \"$*\" $BALLPISTON_SERVER $PYTHONSAFEPATH >" +
                 home_.File("said") + "; exit 3\n");
   std::filesystem::permissions(python, std::filesystem::perms::owner_all);
   const ScopedVariable program("BALLPISTON_PYTHON", python);
@@ -132,7 +143,11 @@ TEST_F(CommandLineTest, AFigureStartsPythonAndReturnsItsExitCode) {
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_EQ(Contents(home_.File("said")),
             "-m ballpiston.figures mean-free-time --samples 7 --relaxation-delta 0.1,0.2 "
-            "--out=figures --quick h:1\n");
+            "--out=figures --quick h:1 1\n");
+  WriteFile(python, "#!/bin/sh\n[ \"$1\" = -c ] || kill -9 $$\n");
+  const Outcome killed = Ballpiston({"figure", "mean-free-time"});
+  EXPECT_EQ(killed.code, 4);
+  EXPECT_THAT(killed.err, HasSubstr("was ended by signal 9, perhaps because"));
 }
 
 // ---- exit codes ----
