@@ -514,8 +514,9 @@ std::vector<Verb> AllVerbs() {
        "A row for each ball-piston collision: sample, times, place, velocities before and after, "
        "energies. They are the collisions that `run --verify` with the same flags averages. One "
        "point, of an experiment with a pair except lyapunov, by a billiard, with samples or "
-       "collisions. .npz and .parquet need Python with the package ballpiston. "
-       "Prints the path of the file. proto/ballpiston/v1/trace.proto describes the columns.",
+       "collisions. .npz and .parquet need Python with the package ballpiston, and memory for all "
+       "rows, some 200 bytes each. Prints the path of the file. proto/ballpiston/v1/trace.proto "
+       "describes the columns.",
        {kExperiment},
        With(kQuestion, {&kTableFile, &kServer}),
        {"sample first-hit --rho 0.5296 --delta 0.2 --epsilon 0.125 --exponent 1 --samples 1e5 "
