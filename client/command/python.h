@@ -1,6 +1,7 @@
 // The Python package `ballpiston` that belongs to this program. Some verbs start its programs.
 //
-// The interpreter is BALLPISTON_PYTHON, by default python3 in PATH.
+// The interpreter is BALLPISTON_PYTHON, by default python3 in PATH, or /usr/bin/python3 if that one
+// lacks the needed packages.
 #pragma once
 
 #include <string>

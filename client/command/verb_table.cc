@@ -699,7 +699,9 @@ const std::vector<Remark>& Files() {
       {"~/.local/state/ballpiston",
        "jobs, log and socket of the private server. XDG_STATE_HOME replaces ~/.local/state. "
        "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"},
-      {"python3", "draws figures. BALLPISTON_PYTHON is another Python to start"}};
+      {"python3",
+       "draws figures; /usr/bin/python3 if the one in PATH lacks their packages. BALLPISTON_PYTHON "
+       "is another Python to start"}};
   return *files;
 }
 

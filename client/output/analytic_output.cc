@@ -1,28 +1,44 @@
 #include <string>
 #include <utility>
 
-#include "absl/strings/str_format.h"
+#include "absl/functional/function_ref.h"
+#include "absl/strings/str_cat.h"
 #include "client/output/answers.h"
 #include "client/output/field_text.h"
 #include "client/output/json.h"
+#include "client/output/number_text.h"
 #include "client/output/text_table.h"
 
 namespace ballpiston::client {
 namespace {
 
-void PrintCsv(const v1::EvaluatePairsResponse& response, std::ostream& out) {
+Cells KernelTitles(const std::vector<double>& outgoing) {
+  Cells titles;
+  for (const double energy : outgoing) titles.push_back(absl::StrCat("W(", ExactText(energy), ")"));
+  return titles;
+}
+
+Cells KernelCells(const v1::EnergyAnalytics& energy, absl::FunctionRef<std::string(double)> text) {
+  Cells cells;
+  for (const double w : energy.kernel()) cells.push_back(text(w));
+  return cells;
+}
+
+void PrintCsv(const v1::EvaluatePairsResponse& response, const std::vector<double>& outgoing,
+              std::ostream& out) {
   const Cells pairs = PlainFields(*v1::PairAnalytics::descriptor()),
               energies = PlainFields(*v1::EnergyAnalytics::descriptor()),
               averages = PlainFields(*v1::CanonicalAnalytics::descriptor());
-  const Cells no_energy(energies.size()), no_averages(averages.size());
-  out << CsvRow(Joined({pairs, energies, averages}));
+  const Cells no_energy(energies.size() + outgoing.size()), no_averages(averages.size());
+  out << CsvRow(Joined({pairs, energies, KernelTitles(outgoing), averages}));
   for (const v1::PairAnalytics& pair : response.points()) {
     const Cells cells = FieldTexts(pair, pairs);
     if (pair.energies().empty() && pair.canonical().empty()) {
       out << CsvRow(Joined({cells, no_energy, no_averages}));
     }
     for (const auto& energy : pair.energies()) {
-      out << CsvRow(Joined({cells, FieldTexts(energy, energies), no_averages}));
+      out << CsvRow(Joined(
+          {cells, FieldTexts(energy, energies), KernelCells(energy, &ExactText), no_averages}));
     }
     for (const auto& row : pair.canonical()) {
       out << CsvRow(Joined({cells, no_energy, FieldTexts(row, averages)}));
@@ -62,22 +78,15 @@ void PrintRows(const Rows& rows, const Cells& kernel_titles, std::ostream& out, 
   table.Print(out, 2);
 }
 
-Cells KernelCells(const v1::EnergyAnalytics& energy) {
-  Cells cells;
-  for (const double w : energy.kernel()) cells.push_back(TableCell(w));
-  return cells;
-}
-
 void PrintTable(const v1::EvaluatePairsResponse& response, const std::vector<double>& outgoing,
                 std::ostream& out) {
-  Cells kernel_titles;
-  for (const double energy : outgoing) kernel_titles.push_back(absl::StrFormat("W(%g)", energy));
   const char* separator = "";
   for (const v1::PairAnalytics& pair : response.points()) {
     out << separator;
     separator = "\n";
     PrintQuantities(pair, out);
-    PrintRows(pair.energies(), kernel_titles, out, &KernelCells);
+    PrintRows(pair.energies(), KernelTitles(outgoing), out,
+              [](const auto& energy) { return KernelCells(energy, &TableCell); });
     PrintRows(pair.canonical(), {}, out, [](const auto&) { return Cells(); });
   }
 }
@@ -94,7 +103,7 @@ void PrintAnalytics(const v1::EvaluatePairsResponse& response,
     case Format::kJsonl:
       return PrintJsonLines(response.points(), out);
     default:
-      return PrintCsv(response, out);
+      return PrintCsv(response, outgoing_epsilon, out);
   }
 }
 

@@ -6,13 +6,12 @@
 
 #include "core/ensemble/chunk_fold.h"
 #include "core/ensemble/point_experiment.h"
-#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 
 double Scatter::ErrorOf(double samples) const {
   if (samples < SamplesForAnError()) return std::numeric_limits<double>::infinity();
-  return error / std::sqrt(samples);
+  return std::max(error / std::sqrt(samples), least);
 }
 
 double Scatter::SamplesForAnError() const { return kEventsForAnError / events; }

@@ -13,6 +13,7 @@
 #include "absl/strings/string_view.h"
 #include "core/ensemble/chunk_plan.h"
 #include "core/ensemble/ensemble_spec.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 
@@ -65,9 +66,11 @@ struct Scatter {
   // The expected number of events of a sample. An error needs kEventsForAnError events
   // (statistics/stated_error.h).
   double events = 1;
+  // The least relative error that is stated, whatever the number of samples.
+  double least = kRoundingOfAMean;
 
-  // The relative standard error of n samples: 1/sqrt(n) times that of one sample; infinite if n
-  // samples are too few for an error.
+  // The relative standard error of n samples: 1/sqrt(n) times that of one sample, but at least
+  // `least`; infinite if n samples are too few for an error.
   double ErrorOf(double samples) const;
   // The fewest samples that have an error; infinite if no number of samples is enough.
   double SamplesForAnError() const;
@@ -90,6 +93,9 @@ struct AimedEstimate {
   // Upper bound of the relative difference between the limit delta -> 0 and the billiard; empty
   // where none is known. Null: none is known at any point.
   std::optional<double> (*limit_error)(const PointParameters& point) = nullptr;
+  // Upper bound of the relative error of the model without samples, if there is one. At energies
+  // where the estimate is nearly 0 the stated error can be larger.
+  double numerical_error = 0;
   // Why no number of samples gives a relative error at some points, and what is permitted there.
   absl::string_view no_error = {};
   // Names of estimates that are this one in other units, so that they have its relative errors.

@@ -6,7 +6,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 namespace {
@@ -51,10 +50,10 @@ std::vector<Estimate> EstimatesOf(const std::vector<Measurement>& table,
   return estimates;
 }
 
-Estimate MeanOf(const Moments& sample, double events) {
+Estimate MeanOf(const Moments& sample, double events, double rounding) {
   const double value = sample.count == 0 ? kNotMeasured : sample.mean;
   return {.value = value,
-          .standard_error = StatedError(events, value, sample.StandardError()),
+          .standard_error = StatedError(events, value, sample.StandardError(), rounding),
           .batches = sample.EffectiveCount()};
 }
 
@@ -76,9 +75,9 @@ std::string RemarkOnSamples(absl::string_view estimate, double needed) {
       estimate, std::ceil(needed));
 }
 
-Reading MeanAt(size_t index, double events_per_sample) {
+Reading MeanAt(size_t index, double events_per_sample, double rounding) {
   return [=](const BlockResult& merged) {
-    return MeanOf(merged.moments[index], EventsIn(merged, events_per_sample));
+    return MeanOf(merged.moments[index], EventsIn(merged, events_per_sample), rounding);
   };
 }
 

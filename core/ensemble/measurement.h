@@ -15,6 +15,7 @@
 #include "core/arithmetic/bounded_value.h"
 #include "core/ensemble/block_result.h"
 #include "core/ensemble/point_summary.h"
+#include "core/statistics/stated_error.h"
 
 namespace ballpiston {
 
@@ -40,15 +41,15 @@ std::vector<Estimate> EstimatesOf(const std::vector<Measurement>& table, const B
 // The estimate in other units.
 Estimate Scaled(Estimate estimate, double scale);
 
-Estimate MeanOf(const Moments& sample, double events);
+Estimate MeanOf(const Moments& sample, double events, double rounding = kRoundingOfAMean);
 Estimate RatioOf(const BatchMeans& sample, double events);
 
 // A remark for an estimate without a standard error, which needs this number of samples; infinite
 // if no number is enough.
 std::string RemarkOnSamples(absl::string_view estimate, double needed);
 
-// Readings of the accumulator with this index.
-Reading MeanAt(size_t index, double events_per_sample = 1);
+// Readings of the accumulator with this index. `rounding`: as of StatedError.
+Reading MeanAt(size_t index, double events_per_sample = 1, double rounding = kRoundingOfAMean);
 Reading RatioAt(size_t index, double events_per_sample = 1);
 
 inline CurvePoint CurvePointOf(double at, const Estimate& estimate) {

@@ -214,6 +214,7 @@ constexpr AimedEstimate kAimsOfRelaxation[] = {{.name = "relaxation_time",
                                                 .models = kModelsOfRelaxation,
                                                 .scatter = ScatterOfAnOrbit,
                                                 .limit_error = LimitErrorOfRelaxation,
+                                                .numerical_error = 1e-7,
                                                 .no_error = kNoTime,
                                                 .multiples = kMultiplesOfTheTime}};
 

@@ -90,7 +90,8 @@ constexpr Model kModelsOfEquilibrium[] = {Model::kClosedForm, Model::kBilliard,
 
 constexpr AimedEstimate kAimsOfEquilibrium[] = {{.name = kNamesOfTimes[kBallPiston],
                                                  .models = kModelsOfEquilibrium,
-                                                 .scatter = ScatterOfTimes}};
+                                                 .scatter = ScatterOfTimes,
+                                                 .numerical_error = kClosedFormError}};
 
 }  // namespace
 

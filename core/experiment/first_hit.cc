@@ -160,6 +160,7 @@ constexpr absl::string_view kNoVariance =
 constexpr AimedEstimate kAimsOfConditional[] = {{.name = kConditionalTime,
                                                  .models = kModelsOfConditional,
                                                  .scatter = ScatterOfAReturn,
+                                                 .numerical_error = kClosedFormError,
                                                  .no_error = kNoVariance}};
 
 // ---- first-hit ----

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -67,6 +66,12 @@ BoundedValue LimitCorrection(const GasGeometry& geometry) {
 
 double TimeInEquilibrium(Model model, const GasGeometry& geometry) {
   return ExchangesOf(model, geometry) / InfiniteGasExchangeRate(geometry, 1);
+}
+
+// The least relative error of a current. That of the jump process is in units of its exchange rate,
+// which is rounded.
+double RoundingBy(Model model) {
+  return model == Model::kMarkov ? kRoundingOfTheRate : kRoundingOfAMean;
 }
 
 std::vector<Histogram> EmptySpeeds() { return {2, Histogram::OfBins(0, kMostSpeed, kSpeedBins)}; }
@@ -239,11 +244,16 @@ class GasEquilibrium : public GasExperiment {
   }
 
   // The limit, which is beside measured estimates, is that of the infinite gas.
+  // The mean of the moments with this index.
+  Reading OfCurrent(size_t index) const {
+    return MeanAt(index, events_, RoundingBy(answer().model));
+  }
+
   void AddConductivity(std::vector<Measurement>& table) const {
     const auto [correction, error] = LimitCorrection(geometry());
     // `of_static`: the static conductivity, in the units of the estimate.
     const auto add = [&](const char* name, double scale, double of_static) {
-      Measurement row = {name, MeanAt(kFirstWindow + kWindow, events_), scale};
+      Measurement row = {name, OfCurrent(kFirstWindow + kWindow), scale};
       row.known = {of_static * (1 + correction), of_static * error};
       if (TakesSamples(answer().model)) row.limit = row.known->value;
       table.push_back(std::move(row));
@@ -257,7 +267,7 @@ class GasEquilibrium : public GasExperiment {
                 const BlockResult& merged) const {
     Curve curve = {.name = name};
     for (size_t step = first_step; step <= kWindow; ++step) {
-      const Measurement there = {"", MeanAt(first + step - first_step, events_), scale};
+      const Measurement there = {"", OfCurrent(first + step - first_step), scale};
       curve.points.push_back(CurvePointOf(static_cast<double>(step) * Step(), *there.Of(merged)));
     }
     return curve;
@@ -398,19 +408,19 @@ Scatter ScatterOfTheRate(Model model, const PointParameters& point) {
 
 // Measured errors. They fall with the number of cells to a constant, because the error of a
 // correlation is proportional to its scale; 1 + 1/cells fits small gases. The jump process measures
-// only the correction, which is 0 up to rounding in one column.
+// only the correction, which is 0 in one column.
 double ErrorOfConductivity(Model model, const GasShape& shape) {
   if (model != Model::kMarkov) {
     return (shape.is_lattice ? 1.9 : 2.3) * (1 + 1 / static_cast<double>(shape.cells()));
   }
-  if (shape.columns == 1) return std::numeric_limits<double>::epsilon();
+  if (shape.columns == 1) return 0;
   if (shape.columns == 2) return shape.is_lattice && shape.rows == 1 ? 0.0007 : 0.0003;
   return shape.rows > 1 ? 0.0005 : 0.001;
 }
 
 Scatter ScatterOfConductivity(Model model, const PointParameters& point) {
   const GasShape shape = ShapeOf(point[kCells]);
-  return {ErrorOfConductivity(model, shape), EventsOfCurrents(model, shape)};
+  return {ErrorOfConductivity(model, shape), EventsOfCurrents(model, shape), RoundingBy(model)};
 }
 
 // The relative difference between the infinite gas, whose conductivity the spectrum gives, and a
@@ -460,11 +470,15 @@ constexpr Model kModelsOfConductivity[] = {Model::kSpectrum, Model::kMarkov, Mod
                                            Model::kBilliardReference};
 constexpr absl::string_view kMultiplesOfTheConductivity[] = {"conductivity_ratio"};
 constexpr AimedEstimate kAimsOfGasEquilibrium[] = {
-    {.name = "exchange_rate", .models = kModelsOfGasEquilibrium, .scatter = ScatterOfTheRate},
+    {.name = "exchange_rate",
+     .models = kModelsOfGasEquilibrium,
+     .scatter = ScatterOfTheRate,
+     .numerical_error = kGasExchangeRateRelativeError},
     {.name = kConductivity,
      .models = kModelsOfConductivity,
      .scatter = ScatterOfConductivity,
      .limit_error = ErrorOfTheLimit,
+     .numerical_error = kChainCorrection.error / (1 + kChainCorrection.value),
      .multiples = kMultiplesOfTheConductivity}};
 
 }  // namespace

@@ -40,12 +40,14 @@ SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time);
 // Upper bound of the bytes of the replicas that a thread computes together.
 double MemoryOfReplicas(Model model, const PointParameters& point);
 
+inline constexpr double kRoundingOfTheRate = 0x1p-30;  // see WithoutLastBits
+
 class GasExperiment : public PointExperiment {
  public:
   // A run of gases calls these functions, from any thread.
   GasEngine gas_engine() const;
   const GasGeometry& geometry() const { return geometry_; }
-  // At temperature 1.
+  // At temperature 1; its relative error is kRoundingOfTheRate.
   double exchange_rate() const { return exchange_rate_; }
   GasRandom RandomOf(uint64_t sample) const { return {random().seed, random().stream, sample}; }
 

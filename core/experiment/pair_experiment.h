@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/block_orbits.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
@@ -20,6 +21,10 @@
 #include "core/sampling/invariant_measure.h"
 
 namespace ballpiston {
+
+// Of the mean times between collisions, relative.
+inline constexpr double kClosedFormError =
+    kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
 
 inline constexpr ParameterUse kPairAlone[] = {{&kRho}, {&kDelta}};
 

@@ -7,7 +7,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/arithmetic/number_text.h"
-#include "core/closed_form/mean_free_time.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/gas/gas_shape.h"
 #include "core/model_choice/ladder.h"
@@ -15,8 +14,6 @@
 
 namespace ballpiston {
 namespace {
-
-constexpr double kClosedFormError = kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
 
 // Not below x: rounding to two digits lowers a number by at most 4.8 %.
 std::string RoundedUp(double x) { return Rounded(1.05 * x); }
@@ -81,15 +78,15 @@ std::optional<FieldViolation> WithoutAnError(const EnsembleSpec& spec, const Exp
 }
 
 // The least tolerance that can be reached: the model's error, which counts for `markov` only where
-// pilots can check it. For a model that samples, at least the statistical error of the largest
-// permitted number of samples.
+// pilots can check it, and at least the statistical error of the largest permitted number of
+// samples or the numerical error of a model without samples.
 double LeastTolerance(const EnsembleSpec& spec, const Expected& expected) {
   const auto& [point, model, scatter] = expected;
   const Question question(spec, point, Machine());
   const bool is_checked = model != Model::kMarkov || question.HasPilots();
   const double of_model = is_checked ? question.ModelErrorOf(model).value_or(0) : 0;
-  const double of_samples =
-      TakesSamples(model) ? scatter.ErrorOf(static_cast<double>(kMaxSamples)) : 0;
+  const double of_samples = TakesSamples(model) ? scatter.ErrorOf(static_cast<double>(kMaxSamples))
+                                                : AimOf(spec).numerical_error;
   return std::isfinite(of_samples) ? std::max(of_model, of_samples) : of_model;
 }
 
@@ -147,7 +144,7 @@ FieldViolation TooLong(const EnsembleSpec& spec, const PointParameters& point, d
 std::vector<FieldViolation> AnswerViolations(const EnsembleSpec& spec) {
   const std::optional<double>& tolerance = spec.target.tolerance;
   const bool takes_time = !NeedsNoSamples(spec) && !spec.target.budget_seconds;
-  double least = IsAnsweredByClosedForm(spec) ? kClosedFormError : 0;
+  double least = IsAnsweredByClosedForm(spec) ? AimOf(spec).numerical_error : 0;
   std::optional<FieldViolation> without_an_error, too_long;  // the first ones
   for (size_t i = 0; i < PointCount(spec); ++i) {
     const Expected expected = ExpectedAt(spec, PointAt(spec, i));

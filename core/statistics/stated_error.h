@@ -37,10 +37,11 @@ inline constexpr double kRoundingOfAMean = 3e-14;
 
 inline bool HasStatedError(double events) { return events >= kEventsForAnError; }
 
-// `error` of the mean `value`, at least its rounding, if this number of events is enough.
-inline std::optional<double> StatedError(double events, double value, std::optional<double> error) {
+// `error` of the mean `value`, at least its rounding (relative), if this number of events is enough.
+inline std::optional<double> StatedError(double events, double value, std::optional<double> error,
+                                         double rounding = kRoundingOfAMean) {
   if (!error || !HasStatedError(events)) return std::nullopt;
-  return std::fmax(*error, kRoundingOfAMean * std::fabs(value));
+  return std::fmax(*error, rounding * std::fabs(value));
 }
 
 }  // namespace ballpiston

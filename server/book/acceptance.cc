@@ -58,8 +58,11 @@ bool Fit(const Labels& labels, Labels more) {
 }
 
 std::optional<JobRecord> FindOriginal(Database& database, const JobRecord& record) {
-  auto original = FindJobOfRequest(database, record.job.principal(), record.request_id);
-  const bool is_other = original && original->payload != record.payload;
+  const std::string& principal = record.job.principal();
+  auto original = FindJobOfRequest(database, principal, record.request_id);
+  const bool is_other =
+      original ? original->payload != record.payload
+               : FindJobOfCancellation(database, principal, record.request_id).has_value();
   if (is_other) database.Fail(RequestIdReused(record.request_id));
   return original;
 }

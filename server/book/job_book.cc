@@ -144,6 +144,13 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
   bool begun = false;
   const auto found = store_.Commit([&](Database& database) {
     JobRecord record = JobOf(database, caller, id, Grid::kLeftOut);
+    const std::string& owner = record.job.principal();
+    const auto other = FindJobOfCancellation(database, owner, request_id);
+    if ((other && other->sequence != record.sequence) ||
+        FindJobOfRequest(database, owner, request_id)) {
+      database.Fail(RequestIdReused(request_id));
+      return record;
+    }
     begun = BeginCancellation(database, record, request_id);
     Failpoint("cancel.in_transaction");
     const bool is_replay = !request_id.empty() && record.cancel_request_id == request_id;

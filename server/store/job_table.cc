@@ -121,6 +121,13 @@ std::optional<JobRecord> FindJobOfRequest(Database& database, const std::string&
                   "principal = ? AND request_id = ? AND request_id <> ''", principal, request_id);
 }
 
+std::optional<JobRecord> FindJobOfCancellation(Database& database, const std::string& principal,
+                                               const std::string& request_id) {
+  return FirstJob(database, Grid::kLeftOut,
+                  "principal = ? AND cancel_request_id = ? AND cancel_request_id <> ''", principal,
+                  request_id);
+}
+
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
                                     const std::string& question,
                                     absl::FunctionRef<bool(const v1::EnsembleJob&)> accepts) {

@@ -45,6 +45,9 @@ std::optional<JobRecord> FindJobBySequence(Database& database, int64_t sequence)
 // The job that the principal's request with this id made. Empty also without an id.
 std::optional<JobRecord> FindJobOfRequest(Database& database, const std::string& principal,
                                           const std::string& request_id);
+// The job that the principal's request with this id cancelled. Empty also without an id.
+std::optional<JobRecord> FindJobOfCancellation(Database& database, const std::string& principal,
+                                               const std::string& request_id);
 
 // The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question) and for
 // which `accepts` returns true.

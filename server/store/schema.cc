@@ -45,6 +45,8 @@ CREATE INDEX jobs_that_expired ON jobs (end_time, bytes) WHERE expired = 1;
 CREATE INDEX jobs_by_question ON jobs (principal, question) WHERE question <> x'';
 CREATE INDEX jobs_by_family ON jobs (principal, family) WHERE family <> x'';
 CREATE UNIQUE INDEX jobs_by_request ON jobs (principal, request_id) WHERE request_id <> '';
+CREATE INDEX jobs_by_cancellation ON jobs (principal, cancel_request_id)
+  WHERE cancel_request_id <> '';
 CREATE TABLE checkpoints (
   job INTEGER NOT NULL,
   point INTEGER NOT NULL,

@@ -237,6 +237,18 @@ TEST_F(AcceptanceTest, ARequestIdOfAnotherRequestIsRefused) {
   EXPECT_EQ(List().jobs.size(), 1u);
 }
 
+TEST_F(AcceptanceTest, ARequestIdOfACancellationIsNotThatOfAnotherRequest) {
+  const std::string made = Id(kAnn, CreateRequest(Question(kHeldSeed), kUuid));
+  const std::string id = "123e4567-e89b-12d3-a456-426614174009";
+  const auto reused = IsError(absl::StatusCode::kInvalidArgument, "REQUEST_ID_REUSED");
+  EXPECT_THAT(book_->Cancel(kAnn, made, kUuid), reused);
+  const std::string cancelled = Id(kAnn, FreshRequest(Question(kHeldSeed)));
+  for (int replay = 0; replay < 2; ++replay) EXPECT_OK(book_->Cancel(kAnn, cancelled, id));
+  EXPECT_THAT(book_->Cancel(kAnn, made, id), reused);
+  EXPECT_THAT(Create(kAnn, CreateRequest(Question(), id)), reused);
+  EXPECT_EQ(Id(kAnn, CreateRequest(Question(kHeldSeed), kUuid)), made);
+}
+
 v1::CreateEnsembleJobRequest Labelled(v1::CreateEnsembleJobRequest request, const std::string& key,
                                       const std::string& value) {
   (*request.mutable_labels())[key] = value;
