@@ -88,6 +88,17 @@ def test_a_full_disk_is_an_error_that_names_the_file(
     assert not list(tmp_path.iterdir())
 
 
+def test_sigterm_interrupts_a_program_without_a_traceback(home: Home) -> None:
+    program = (
+        "import signal, sys\n"
+        "from ballpiston.program import run_program\n"
+        "sys.exit(run_program(lambda _: signal.raise_signal(signal.SIGTERM) or [], []))"
+    )
+    interrupted = home.python(program)
+    assert interrupted.communicate(timeout=LIMIT) == ("", "")
+    assert interrupted.returncode == 130
+
+
 def test_an_archive_has_the_arrays_of_the_result(
     first_hits: ballpiston.Result, tmp_path: Path
 ) -> None:
