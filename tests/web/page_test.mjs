@@ -475,6 +475,20 @@ describe('Keyboard, colours and width', () => {
     assert.ok(!(await isDark()));
   });
 
+  it('works in a browser that blocks storage', async () => {
+    await context.addInitScript(() => {
+      const get = () => {
+        throw new DOMException('blocked', 'SecurityError');
+      };
+      Object.defineProperty(window, 'localStorage', {get});
+      Object.defineProperty(window, 'sessionStorage', {get});
+    });
+    await open();
+    await jobLink(firstHit).waitFor();
+    await page.getByLabel('Theme').selectOption('dark');
+    await page.locator('html[data-theme=dark]').waitFor();
+  });
+
   it('all views fit the width of a phone', async () => {
     await newPage({viewport: PHONE});
     await open();

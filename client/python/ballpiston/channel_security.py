@@ -100,10 +100,10 @@ def _own_token(address: str) -> str:
     """The token in the server's file; empty if there is none. It is read for each call, because a
     server makes another token at each start."""
     state = os.environ.get("XDG_STATE_HOME", "")
-    root = Path(state) if state.startswith("/") else Path.home() / ".local" / "state"
     try:
+        root = Path(state) if state.startswith("/") else Path.home() / ".local" / "state"
         return (root / "ballpiston" / "tokens" / socket.gethostname() / address).read_text().strip()
-    except OSError:
+    except (OSError, RuntimeError):  # RuntimeError: no home folder
         return ""
 
 

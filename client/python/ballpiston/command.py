@@ -15,14 +15,12 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
-
 from ballpiston.client import connect
 from ballpiston.errors import NotFound
 from ballpiston.estimates_table import estimates_table
 from ballpiston.program import run_program
 from ballpiston.result import load
-from ballpiston.table_file import write_table
+from ballpiston.table_file import npz_of, write_table
 
 
 def _export(out: Path, *words: str) -> list[Path]:
@@ -44,9 +42,7 @@ def _sample(out: Path, specification: str) -> list[Path]:
 
 
 def _arrays(file: Path) -> list[Path]:
-    arrays = load(file).arrays()
-    with file.open("wb") as out:
-        np.savez_compressed(out, **arrays)
+    file.write_bytes(npz_of(load(file).arrays()))
     return []  # the client prints the final name
 
 

@@ -7,6 +7,7 @@ the call is repeated once. So every call that goes through `call` has to be safe
 
 from __future__ import annotations
 
+import threading
 import time
 import weakref
 from collections.abc import Callable
@@ -78,9 +79,11 @@ class Connection:
             raise self.error_of(error) from None
 
     def open_stream(self, request: Any) -> Any:
-        """The messages of a streaming call. The call begins on a thread of its own, which Ctrl-C does
-        not interrupt: a call that is interrupted while it begins is never read by gRPC, and the
-        interpreter would wait for it forever at its exit."""
+        """The messages of a streaming call. From the main thread the call begins on a thread of its
+        own, which Ctrl-C does not interrupt: a call that is interrupted while it begins is never
+        read by gRPC, and the interpreter would wait for it forever at its exit."""
+        if threading.current_thread() is not threading.main_thread():  # it may outlive the main one
+            return self._method_of(request)(request, metadata=self.metadata())
         with ThreadPoolExecutor(max_workers=1) as thread:
             begun = thread.submit(self._method_of(request), request, metadata=self.metadata())
             try:

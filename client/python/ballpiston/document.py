@@ -101,8 +101,10 @@ def whole_file(path: Path) -> Iterator[Path]:
         yield temporary
         temporary.chmod(stat.S_IMODE(mode))  # mkstemp's files are private
         temporary.replace(path)
-    except BaseException:
+    except BaseException as error:
         temporary.unlink(missing_ok=True)
+        if isinstance(error, OSError) and error.strerror:  # that of a write names no file
+            error.filename = str(path)
         raise
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import sys
 import uuid
 from collections.abc import AsyncIterator, Mapping
@@ -38,9 +39,13 @@ def check_labels(labels: Mapping[str, str] | None) -> Mapping[str, str] | None:
 
 class JobNotSucceeded(Error):
     """The job that was watched ended without success. Its finished points stay:
-    `error.job.result()`."""
+    `error.job.result()`. The error arrives in another process without `job`."""
 
     job: Job
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        state = {name: value for name, value in vars(self).items() if name != "job"}
+        return type(self), self.args, state
 
 
 class JobFailed(JobNotSucceeded):
@@ -173,11 +178,11 @@ class Job:
         try:
             self._follow(screen)
         except KeyboardInterrupt:
-            print(_farewell(self.name), file=sys.stderr)
+            print(_farewell(self), file=sys.stderr)
             raise
         except Error as error:
             if not isinstance(error, NotFound):
-                error.args = (f"{error}\n{_farewell(self.name)}",)
+                error.args = (f"{error}\n{_farewell(self)}",)
             raise
         self._raise_unless_succeeded()
         return self.result()
@@ -381,11 +386,13 @@ class Job:
         return None if time is None else time.ToDatetime(timezone.utc)
 
 
-def _farewell(name: str) -> str:
-    return (
-        f'The job goes on.\n  watch it again:  client.job("{name}").watch()\n'
-        f'  cancel it:       client.job("{name}").cancel()'
-    )
+def _farewell(job: Job) -> str:
+    words = 'client.job("{0}").{1}()'
+    if "BALLPISTON_PROGRESS" in os.environ:  # set by `ballpiston figure`: its user is in a shell
+        words = "ballpiston {1} {0}{2}"
+    server = "" if job._connection.private else f" --server {job._connection.address}"
+    watch, cancel = (words.format(job.name, verb, server) for verb in ("watch", "cancel"))
+    return f"The job goes on.\n  watch it again:  {watch}\n  cancel it:       {cancel}"
 
 
 def _from_store_text(job: Job) -> str:

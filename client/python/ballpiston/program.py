@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import signal
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -27,6 +28,8 @@ _EXIT_CODES: list[tuple[type[BaseException], int]] = [
 def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str]) -> int:
     """Prints the paths of the files that `main` writes. Returns the exit code."""
     try:
+        # Before this line SIGTERM ends Python without a traceback, and SIGINT does not.
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
         for path in main(arguments):
             print(path)
     except tuple(kind for kind, _ in _EXIT_CODES) as error:

@@ -6,6 +6,7 @@ tqdm draws it if tqdm is installed. Where nobody looks, in a pipeline for instan
 from __future__ import annotations
 
 import json
+import shutil
 import sys
 import warnings
 from typing import Any
@@ -25,8 +26,9 @@ class Bar:
 
     def show(self, fraction: float, text: str) -> None:
         marks = int(min(max(fraction, 0.0), 1.0) * _BAR_WIDTH)
-        line = f"[{'#' * marks}{'-' * (_BAR_WIDTH - marks)}] {text}"
-        sys.stderr.write("\r" + line.ljust(self._width))
+        room = shutil.get_terminal_size().columns - 1  # a longer line would wrap
+        line = f"[{'#' * marks}{'-' * (_BAR_WIDTH - marks)}] {text}"[:room]
+        sys.stderr.write("\r" + line.ljust(self._width)[:room])
         sys.stderr.flush()
         self._width = len(line)
 

@@ -82,9 +82,12 @@ def _config_path() -> Path | None:
     if named := os.environ.get("BALLPISTON_CONFIG"):
         return Path(named)
     folder = os.environ.get("XDG_CONFIG_HOME", "")
-    root = Path(folder) if folder.startswith("/") else Path.home() / ".config"
-    path = root / "ballpiston" / "config.toml"
-    return path if path.exists() else None
+    try:
+        root = Path(folder) if folder.startswith("/") else Path.home() / ".config"
+        path = root / "ballpiston" / "config.toml"
+        return path if path.exists() else None
+    except (OSError, RuntimeError):  # a folder of another user, or no home folder
+        return None
 
 
 def _truth(value: object) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 from pathlib import Path
 from typing import Any
 
@@ -30,12 +31,19 @@ def write_table(path: Path, table: Table, comment: str = "") -> None:
                 for row in zip(*(column.tolist() for column in table.values())):
                     writer.writerow(map(_cell, row))
         elif path.suffix == ".npz":
-            with part.open("wb") as file_of_arrays:
-                np.savez_compressed(file_of_arrays, **table)
+            part.write_bytes(npz_of(table))
         else:
             import pandas
 
             pandas.DataFrame(table).to_parquet(part, index=False)
+
+
+def npz_of(table: Table) -> memoryview:
+    """The bytes of an .npz file, made in memory: an archive in a file would write to it again
+    after a failed write, when Python destroys the archive."""
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **table)
+    return buffer.getbuffer()
 
 
 def _cell(value: Any) -> Any:

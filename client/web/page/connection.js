@@ -1,5 +1,5 @@
-// The token, retries, and the banner that says why the server does not answer. The page keeps its
-// content until the server answers again.
+// Storage, the token, retries, and the banner that says why the server does not answer. The page
+// keeps its content until the server answers again.
 (function (ballpiston) {
   'use strict';
 
@@ -7,14 +7,26 @@
   const FIRST_DELAY = 500; // ms; doubles with each failure
   const LONGEST_DELAY = 8000;
 
-  const token = () => sessionStorage.getItem(TOKEN) ?? '';
+  // `name`: localStorage or sessionStorage. Reading it throws if the browser blocks it; then values
+  // last until the page is reloaded.
+  function storage(name) {
+    try {
+      return globalThis[name];
+    } catch {
+      const values = new Map();
+      return {getItem: (key) => values.get(key), setItem: (key, value) => values.set(key, value)};
+    }
+  }
+
+  const session = storage('sessionStorage');
+  const token = () => session.getItem(TOKEN) ?? '';
 
   // Moves the token from the address #token=... into this tab's storage: then bookmarks do not
   // contain it, and a reload keeps it. Returns true if the address had a token.
   function takeToken() {
     const match = /^#token=([\w-]+)$/.exec(location.hash);
     if (!match) return false;
-    sessionStorage.setItem(TOKEN, match[1]);
+    session.setItem(TOKEN, match[1]);
     history.replaceState(null, '', '#jobs');
     return true;
   }
@@ -127,6 +139,7 @@
   }
 
   Object.assign(ballpiston, {
+    storage,
     token,
     takeToken,
     clearBanner,

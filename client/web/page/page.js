@@ -73,14 +73,15 @@
   }
 
   function setUpTheme() {
-    const stored = localStorage.getItem(THEME);
+    const storage = ballpiston.storage('localStorage');
+    const stored = storage.getItem(THEME);
     const theme = THEMES.includes(stored) ? stored : 'auto';
     const chooser = ballpiston.choice(
       'Theme',
       THEMES.map((name) => ({value: name, label: name})),
       theme,
       (chosen) => {
-        localStorage.setItem(THEME, chosen);
+        storage.setItem(THEME, chosen);
         applyTheme(chosen);
       },
     );

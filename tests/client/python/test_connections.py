@@ -164,6 +164,20 @@ def test_a_wrong_setting_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         ballpiston.connect()
 
 
+@pytest.mark.parametrize("method,error", [("home", RuntimeError), ("exists", PermissionError)])
+def test_a_home_folder_that_cannot_be_read_has_no_settings(
+    method: str, error: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: Path) -> None:
+        raise error
+
+    for variable in ("XDG_CONFIG_HOME", "XDG_STATE_HOME"):
+        monkeypatch.delenv(variable)
+    monkeypatch.setattr(Path, method, fail)
+    assert address_and_security({"address": "host:1"}) == ("host:1", ChannelSecurity())
+    assert Token(ChannelSecurity(), "127.0.0.1:1").metadata() == []
+
+
 def test_no_program_and_no_server_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

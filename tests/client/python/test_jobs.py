@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import uuid
 
 import numpy as np
@@ -74,6 +75,19 @@ def test_a_cancelled_job_keeps_its_finished_points(
     assert caught.value.job is endless
     assert list(endless.specification.grid.rho)
     assert len(endless.result()) == 0
+
+
+def test_the_error_of_a_job_reaches_another_process(
+    client: ballpiston.Client, endless: ballpiston.Job
+) -> None:
+    endless.cancel()
+    with pytest.raises(ballpiston.JobCancelled) as caught:
+        endless.watch()
+    caught.value.metadata["limit"] = "3"
+    error = pickle.loads(pickle.dumps(caught.value))
+    assert type(error) is ballpiston.JobCancelled
+    assert str(error) == f"{endless.name} cancelled"
+    assert error.metadata == {"limit": "3"} and not hasattr(error, "job")
 
 
 def test_a_pinned_job_can_be_unpinned(client: ballpiston.Client) -> None:

@@ -68,6 +68,37 @@ def test_an_interruption_ends_the_conversion_to_arrays(
     assert list(tmp_path.iterdir()) == [python]
 
 
+@pytest.mark.parametrize("ending", ["csv", "npz"])
+def test_a_full_disk_is_an_error_that_names_the_file(
+    ending: str, home: Home, tmp_path: Path
+) -> None:
+    program = (
+        "import resource, sys, numpy\n"
+        "from pathlib import Path\n"
+        "from ballpiston.program import run_program\n"
+        "from ballpiston.table_file import write_table\n"
+        "table = {'n': numpy.random.default_rng(1).random(1000)}\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))\n"
+        "sys.exit(run_program(lambda words: write_table(Path(words[0]), table), sys.argv[1:]))"
+    )
+    file = tmp_path / f"table.{ending}"
+    writer = home.python(program, str(file))
+    assert writer.communicate(timeout=LIMIT) == ("", f"ballpiston: {file}: File too large\n")
+    assert writer.returncode == 4
+    assert not list(tmp_path.iterdir())
+
+
+def test_sigterm_interrupts_a_program_without_a_traceback(home: Home) -> None:
+    program = (
+        "import signal, sys\n"
+        "from ballpiston.program import run_program\n"
+        "sys.exit(run_program(lambda _: signal.raise_signal(signal.SIGTERM) or [], []))"
+    )
+    interrupted = home.python(program)
+    assert interrupted.communicate(timeout=LIMIT) == ("", "")
+    assert interrupted.returncode == 130
+
+
 def test_an_archive_has_the_arrays_of_the_result(
     first_hits: ballpiston.Result, tmp_path: Path
 ) -> None:

@@ -66,6 +66,20 @@ def test_ctrl_c_ends_the_watch_and_leaves_the_job(
     wait_until(lambda: streams(client) == 0)
 
 
+def test_a_thread_watches_after_the_end_of_the_main_thread(home: Home) -> None:
+    program = (
+        "import ballpiston, threading\n"
+        f"client = ballpiston.connect(timeout={LIMIT})\n"
+        "def run():\n"
+        "    threading.main_thread().join()\n"
+        "    print(client.run(**eval(input())).state)\n"
+        "threading.Thread(target=run).start()"
+    )
+    watcher = home.python(program, stdin=-1)
+    question = repr({**FIRST_HITS, "fresh": True})
+    assert watcher.communicate(question, LIMIT) == ("succeeded\n", "")
+
+
 def test_there_is_no_bar_where_nobody_looks(home: Home) -> None:
     program = f"import ballpiston; ballpiston.connect(timeout={LIMIT}).run(**eval(input()))"
     watcher = home.python(program, stdin=-1)
@@ -133,6 +147,17 @@ def test_a_bar_shows_points_an_estimate_and_lost_connections() -> None:
         (0.25, "1/4 points  mean_hit_time 57.66 ± 0.12"),
         (0.25, "1/4 points  no answer, retrying in 0.2 s"),
     ]
+
+
+def test_a_bar_is_shorter_than_a_line_of_the_terminal(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bar = Bar()
+    for columns in ("60", "30"):
+        monkeypatch.setenv("COLUMNS", columns)
+        bar.show(0.5, "4/4 points" + 80 * ".")
+    _, wide, narrow = capsys.readouterr().err.split("\r")
+    assert (len(wide), len(narrow)) == (59, 29)
 
 
 def test_the_time_left_does_not_count_the_time_in_the_queue(
@@ -234,6 +259,13 @@ def test_an_error_ends_the_watch_and_the_message_says_how_to_watch_again(
     monkeypatch.setattr("ballpiston.job.watch_job", expired)
     with pytest.raises(ballpiston.Unauthenticated, match="expired\\nThe job goes on"):
         endless.watch()
+    monkeypatch.setenv("BALLPISTON_PROGRESS", "none")  # as in `ballpiston figure`
+    with pytest.raises(ballpiston.Unauthenticated, match=f"ballpiston cancel {endless.name}$"):
+        endless.watch()
+    address = client.job(endless.name)._connection.address
+    with ballpiston.connect(address, timeout=LIMIT) as named:
+        with pytest.raises(ballpiston.Unauthenticated, match=f"{endless.name} --server {address}$"):
+            named.job(endless.name).watch()
 
 
 def test_a_watch_of_no_job_is_an_error(client: ballpiston.Client) -> None:

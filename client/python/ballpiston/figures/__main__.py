@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import sys
 
+from ballpiston.figures.parts.command import main
+
 if __name__ == "__main__":
-    try:
-        from ballpiston.figures.parts.command import main
-    except KeyboardInterrupt:
-        sys.exit(130)
     sys.exit(main(sys.argv[1:]))
