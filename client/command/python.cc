@@ -83,7 +83,7 @@ VerbResult RunPythonProgram(const std::string& module, const std::vector<std::st
   std::vector<std::string> words = {"-m", module};
   words.insert(words.end(), arguments.begin(), arguments.end());
   const auto stop = [&terminal](pid_t pid) {
-    kill(-pid, SIGINT);
+    kill(-pid, SIGTERM);  // while Python starts, SIGINT would print a traceback
     terminal.err << (isatty(STDERR_FILENO) ? "\r\x1b[K" : "")
                  << "The file is not finished: run the same command again.\n";
     WaitForChild(pid).IgnoreError();

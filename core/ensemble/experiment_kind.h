@@ -93,9 +93,8 @@ struct AimedEstimate {
   // Upper bound of the relative difference between the limit delta -> 0 and the billiard; empty
   // where none is known. Null: none is known at any point.
   std::optional<double> (*limit_error)(const PointParameters& point) = nullptr;
-  // Upper bound of the relative error of the model without samples, if there is one. At energies
-  // where the estimate is nearly 0 the stated error can be larger.
-  double numerical_error = 0;
+  // The relative error of the model without samples. Null if all models take samples.
+  double (*numerical_error)(const PointParameters& point) = nullptr;
   // Why no number of samples gives a relative error at some points, and what is permitted there.
   absl::string_view no_error = {};
   // Names of estimates that are this one in other units, so that they have its relative errors.

@@ -197,6 +197,14 @@ std::optional<double> LimitErrorOfRelaxation(const PointParameters& point) {
   return ExpectedLimitError(point);
 }
 
+double ErrorOfTheSpectrum(const PointParameters& point) {
+  const RelaxationSpectrum& spectrum = RelaxationSpectrum::Get();
+  const auto epsilon = point.Find(kEpsilon);
+  const auto [value, error] =
+      epsilon ? spectrum.DecayIntegral(*epsilon, HUGE_VAL) : spectrum.CorrelationTime(HUGE_VAL);
+  return error / std::fabs(value);
+}
+
 constexpr ParameterUse kParametersOfRelaxation[] = {
     {&kRho}, {&kDelta}, {.parameter = &kEpsilon, .needed = false}};
 constexpr Model kModelsOfRelaxation[] = {Model::kSpectrum, Model::kMarkov, Model::kBilliard,
@@ -214,7 +222,7 @@ constexpr AimedEstimate kAimsOfRelaxation[] = {{.name = "relaxation_time",
                                                 .models = kModelsOfRelaxation,
                                                 .scatter = ScatterOfAnOrbit,
                                                 .limit_error = LimitErrorOfRelaxation,
-                                                .numerical_error = 1e-7,
+                                                .numerical_error = ErrorOfTheSpectrum,
                                                 .no_error = kNoTime,
                                                 .multiples = kMultiplesOfTheTime}};
 

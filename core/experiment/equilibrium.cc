@@ -91,7 +91,7 @@ constexpr Model kModelsOfEquilibrium[] = {Model::kClosedForm, Model::kBilliard,
 constexpr AimedEstimate kAimsOfEquilibrium[] = {{.name = kNamesOfTimes[kBallPiston],
                                                  .models = kModelsOfEquilibrium,
                                                  .scatter = ScatterOfTimes,
-                                                 .numerical_error = kClosedFormError}};
+                                                 .numerical_error = ErrorOfClosedForms}};
 
 }  // namespace
 

@@ -160,7 +160,7 @@ constexpr absl::string_view kNoVariance =
 constexpr AimedEstimate kAimsOfConditional[] = {{.name = kConditionalTime,
                                                  .models = kModelsOfConditional,
                                                  .scatter = ScatterOfAReturn,
-                                                 .numerical_error = kClosedFormError,
+                                                 .numerical_error = ErrorOfClosedForms,
                                                  .no_error = kNoVariance}};
 
 // ---- first-hit ----

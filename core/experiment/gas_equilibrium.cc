@@ -445,6 +445,11 @@ std::optional<double> ErrorOfTheLimit(const PointParameters& point) {
   return ExpectedLimitErrorInAGas(point) + ErrorOfSize(geometry) + LimitCorrection(geometry).error;
 }
 
+double ErrorOfTheCorrection(const PointParameters& point) {
+  const auto [correction, error] = LimitCorrection(PeriodicGasOf(point));
+  return error / (1 + correction);
+}
+
 void CheckEquilibriumGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   CheckGasGrid(spec, found);
   if (spec.target.estimate != kConductivity || spec.model == Model::kSpectrum) return;
@@ -473,12 +478,12 @@ constexpr AimedEstimate kAimsOfGasEquilibrium[] = {
     {.name = "exchange_rate",
      .models = kModelsOfGasEquilibrium,
      .scatter = ScatterOfTheRate,
-     .numerical_error = kGasExchangeRateRelativeError},
+     .numerical_error = [](const PointParameters&) { return kGasExchangeRateRelativeError; }},
     {.name = kConductivity,
      .models = kModelsOfConductivity,
      .scatter = ScatterOfConductivity,
      .limit_error = ErrorOfTheLimit,
-     .numerical_error = kChainCorrection.error / (1 + kChainCorrection.value),
+     .numerical_error = ErrorOfTheCorrection,
      .multiples = kMultiplesOfTheConductivity}};
 
 }  // namespace

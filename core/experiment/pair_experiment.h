@@ -23,8 +23,9 @@
 namespace ballpiston {
 
 // Of the mean times between collisions, relative.
-inline constexpr double kClosedFormError =
-    kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
+constexpr double ErrorOfClosedForms(const PointParameters& /*point*/) {
+  return kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
+}
 
 inline constexpr ParameterUse kPairAlone[] = {{&kRho}, {&kDelta}};
 

@@ -86,7 +86,7 @@ double LeastTolerance(const EnsembleSpec& spec, const Expected& expected) {
   const bool is_checked = model != Model::kMarkov || question.HasPilots();
   const double of_model = is_checked ? question.ModelErrorOf(model).value_or(0) : 0;
   const double of_samples = TakesSamples(model) ? scatter.ErrorOf(static_cast<double>(kMaxSamples))
-                                                : AimOf(spec).numerical_error;
+                                                : AimOf(spec).numerical_error(point);
   return std::isfinite(of_samples) ? std::max(of_model, of_samples) : of_model;
 }
 
@@ -144,11 +144,14 @@ FieldViolation TooLong(const EnsembleSpec& spec, const PointParameters& point, d
 std::vector<FieldViolation> AnswerViolations(const EnsembleSpec& spec) {
   const std::optional<double>& tolerance = spec.target.tolerance;
   const bool takes_time = !NeedsNoSamples(spec) && !spec.target.budget_seconds;
-  double least = IsAnsweredByClosedForm(spec) ? AimOf(spec).numerical_error : 0;
+  double least = 0;
   std::optional<FieldViolation> without_an_error, too_long;  // the first ones
   for (size_t i = 0; i < PointCount(spec); ++i) {
     const Expected expected = ExpectedAt(spec, PointAt(spec, i));
     const auto& [point, model, scatter] = expected;
+    if (tolerance && model == Model::kClosedForm) {
+      least = std::max(least, AimOf(spec).numerical_error(point));
+    }
     if (model == Model::kClosedForm) continue;
     if (spec.model == Model::kAuto && IsABilliard(model) && !IsSoundForBilliard(spec, point)) {
       return BeyondTheDomain(spec);

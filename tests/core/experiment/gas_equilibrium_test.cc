@@ -85,6 +85,20 @@ TEST(GasEquilibrium, RatiosByWindowEndAtTheRatio) {
 
 // The conductivity is measured up to 5000 contacts. A question that names it for a larger gas is
 // rejected.
+// Without correlations the conductivity is exactly half of the exchange rate, which the jump
+// process has rounded.
+TEST(GasEquilibrium, TheConductivityOfOneColumnHasTheErrorOfTheRoundedRate) {
+  for (const GasShape& shape : {GasShape{1}, GasShape{1, 3, true}}) {
+    EnsembleSpec spec = SpecAt(2, Model::kMarkov, shape);
+    spec.target.estimate = "conductivity";
+    const PointSummary summary = RunPoint(spec);
+    const Estimate& conductivity = summary.estimates[0];
+    const double exact = *summary.estimates[2].exact / 2;  // of the exchange rate
+    EXPECT_NEAR(conductivity.value, exact, *conductivity.standard_error);
+    EXPECT_LT(*conductivity.standard_error, 1.1 * kRoundingOfTheRate * exact);
+  }
+}
+
 TEST(GasEquilibrium, ConductivityIsMeasuredUpTo5000Contacts) {
   for (const auto& [columns, has] : {std::pair(2500, true), {2501, false}}) {
     EnsembleSpec spec = SpecAt(1, Model::kMarkov, {.columns = columns});
