@@ -127,7 +127,7 @@ class JobBook {
                                               size_t limit) const;
 
   // The finished points after number `after`, in order, at most `limit`; fewer if they are large.
-  // `active` is null if the job has ended. No points: there are no more.
+  // `active` is null if the job has ended. No points: there are no more, or they have expired.
   absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(const JobRecord& record,
                                                            const Job* active, int64_t after,
                                                            size_t limit);
