@@ -212,7 +212,7 @@ void Scheduler::EndTurn(const Lease& lease, double seconds) {
     run->journal().Worked(seconds);
     run->TurnEnds();
     SharesOf(lease).TurnEnds(lease.run, seconds);
-    lease.OpensPoints() ? run->OpeningEnded() : held_.EndTurn(lease);
+    if (!lease.OpensPoints()) held_.EndTurn(lease);
   }
   Wake();
   ClearIfRefuted(run);

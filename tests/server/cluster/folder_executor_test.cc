@@ -133,8 +133,8 @@ TEST_F(FolderExecutorTest, ALeaseThatAKilledServerWasWritingIsRemoved) {
   EXPECT_THAT(In("todo"), SizeIs(2));
 }
 
-// The file in taken/ is moved away, so that its worker stops. The point is not open yet when the
-// later process looks for the first time.
+// The file in taken/ is moved away, so that its worker stops. The later process looks before it
+// opens the point, and again while it opens it.
 TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReported) {
   const EnsembleSpec spec = SomeSpec();
   Begin(spec);
@@ -147,7 +147,10 @@ TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReported) {
   executor_->Look();
   EXPECT_THAT(In("taken"), IsEmpty());
   EXPECT_THAT(In("done"), ElementsAre(taken + ".lost"));
-  EXPECT_TRUE(local_->TakeTurn());  // opens the point
+  const std::optional<Lease> opening = local_->Begin();
+  executor_->Look();
+  EXPECT_THAT(In("done"), ElementsAre(taken + ".lost"));
+  local_->End(*opening, 0);
   executor_->Look();
   EXPECT_THAT(In("done"), IsEmpty());
   EXPECT_EQ(executor_->Status().chunks, 1);
