@@ -157,6 +157,7 @@ void FolderExecutor::NoteTaken(const LeaseFileName& file) {
 bool FolderExecutor::Report(const LeaseFileName& file) {
   const auto found = leases_.find(file.lease);
   Laid* const laid = found == leases_.end() ? nullptr : &found->second;
+  if (earlier_.contains(file.lease)) return true;
   const size_t offset = laid == nullptr ? 0 : laid->reported;
   const std::string path =
       laid != nullptr && !file.outcome ? file.Taken() : file.Done(*file.outcome);
@@ -164,6 +165,7 @@ bool FolderExecutor::Report(const LeaseFileName& file) {
   if (absl::IsUnavailable(bytes.status()) || absl::IsNotFound(bytes.status())) return false;
   const absl::Status status = bytes.ok() ? ReportBytes(*bytes, laid) : bytes.status();
   if (absl::IsUnavailable(status)) return false;
+  if (laid == nullptr) earlier_.insert(file.lease);
   if (!status.ok() && (file.outcome || !absl::IsOutOfRange(status))) {
     Refuse(absl::Status(status.code(), absl::StrCat(path, ": ", status.message())));
   }
@@ -213,8 +215,10 @@ absl::Status FolderExecutor::ReportChunks(const Lease& lease, absl::string_view&
 // Its chunks are on disk.
 void FolderExecutor::End(const LeaseFileName& file) {
   const absl::Status removed = files_->Remove(file.Done(*file.outcome));
+  if (!removed.ok() && !absl::IsNotFound(removed)) return;
+  earlier_.erase(file.lease);
   const auto found = leases_.find(file.lease);
-  if (found == leases_.end() || (!removed.ok() && !absl::IsNotFound(removed))) return;
+  if (found == leases_.end()) return;
   const Lease& lease = found->second.lease;
   if (*file.outcome == Outcome::kCrashed) {
     LogError(absl::StrCat("cluster folder: the engine crashed in worker ", file.worker));

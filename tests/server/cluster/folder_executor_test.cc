@@ -157,6 +157,31 @@ TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReported) {
   ComputeAll(*journal);
 }
 
+// It stays while the disk fails, and while it cannot be removed.
+TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReportedAndChargedOnce) {
+  Begin();
+  const std::string taken = Take(In("todo")[0]);
+  Compute(taken);
+  End(taken);
+  Restart();
+  flush_ = absl::UnavailableError("the disk is slow");
+  const auto journal = Begin();
+  executor_->Look();
+  flush_ = absl::OkStatus();
+  files_.before = [](const std::string& operation, const std::string&) {
+    return operation == "remove" ? absl::UnavailableError("slow, too") : absl::OkStatus();
+  };
+  executor_->Look();
+  executor_->Look();
+  EXPECT_THAT(In("done"), ElementsAre(taken + ".finished"));
+  files_.before = nullptr;
+  executor_->Look();
+  EXPECT_THAT(In("done"), IsEmpty());
+  EXPECT_EQ(executor_->Status().chunks, 1);
+  EXPECT_EQ(journal->work, 1);
+  ComputeAll(*journal);
+}
+
 TEST_F(FolderExecutorTest, ACrashOfTheEngineIsCounted) {
   const auto journal = Begin();
   for (int death = 0; death < kMostDeaths; ++death) {
