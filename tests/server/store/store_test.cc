@@ -288,6 +288,12 @@ TEST_F(StoreTest, AReadThatThrowsEndsItsTransaction) {
   EXPECT_OK(store->Read(count));
 }
 
+TEST_F(StoreTest, AShutdownWaitsForNoRetry) {
+  const auto store = Open({.retry = kUnreachedLimit});
+  store->StopWaiting();
+  store->AwaitRetry();
+}
+
 // Two groups: each result has more bytes than half a group.
 TEST_F(StoreTest, AWriteIsToldWhenItsOwnGroupIsCommitted) {
   const auto store = Open({.delay = kUnreachedLimit});
