@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "core/ensemble/experiment_kind.h"
 #include "server/host.h"
@@ -317,24 +318,23 @@ absl::Status FolderExecutor::LaySome() {
 }
 
 absl::Status FolderExecutor::LayOne(Lease lease) {
+  absl::Cleanup give_back = [&] { scheduler_.Return(lease, false); };  // also after an exception
   const Pace pace = PaceOf(options_, leases_.size());
   const LeaseFileName file = {absl::StrCat(process_, "-", ++laid_)};
   const std::string bytes = BytesOf(LeaseRecord(lease, server_.identity, pace.touch));
   // The folder may have changed while there was no work.
   const absl::Status ready = leases_.empty() ? server_.prepare() : absl::OkStatus();
   const absl::StatusOr<FileStamp> stamp = ready.ok() ? WriteLease(*files_, file, bytes) : ready;
-  if (!stamp.ok()) {
-    scheduler_.Return(lease, false);
-    return stamp.status();
-  }
+  if (!stamp.ok()) return stamp.status();
   Failpoint("cluster.laid");
   const Clock::time_point now = SteadyNow();
-  leases_.emplace(file.lease, Laid{.lease = std::move(lease),
+  leases_.emplace(file.lease, Laid{.lease = lease,
                                    .pace = pace,
                                    .alive = now,
                                    .looked = now,
                                    .stamp = *stamp,
                                    .reported = bytes.size()});
+  std::move(give_back).Cancel();
   return absl::OkStatus();
 }
 

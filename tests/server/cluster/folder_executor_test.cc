@@ -287,6 +287,19 @@ TEST_F(FolderExecutorTest, ALeaseThatCannotBeMovedLeavesNoFile) {
   EXPECT_THAT(files_.files, IsEmpty());
 }
 
+TEST_F(FolderExecutorTest, ALeaseGoesBackIfItsFileRunsOutOfMemory) {
+  bool has_memory = false;
+  files_.before = [&](const std::string& operation, const std::string&) {
+    if (operation == "create" && !std::exchange(has_memory, true)) throw std::bad_alloc();
+    return absl::OkStatus();
+  };
+  const auto journal = Begin();
+  EXPECT_NE(executor_->Status().problem, "");
+  executor_->Look();
+  EXPECT_EQ(executor_->Status().problem, "");
+  ComputeAll(*journal);
+}
+
 // ---- many workers ----
 
 // PaceOf assumes this number for the server and the worker together. Listings of taken/ and done/
