@@ -150,7 +150,6 @@ class JobBook {
                            const CheckedSpec& checked) const;
   absl::StatusOr<v1::EnsembleJob> Answer(const Principal& caller, const JobRecord& record);
   void TellScheduler(const JobRecord& row);
-  void StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked);
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id, Grid grid);
   // Adds the numbers in memory. If the job has ended since its row was read, reads the row again.
   absl::StatusOr<FoundJob> WithNumbers(const Principal& caller, JobRecord record, Grid grid);
