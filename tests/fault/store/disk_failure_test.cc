@@ -1,6 +1,7 @@
 // The store on a disk that rejects writes or is full. The simulation (tests/simulation) fails the
 // disk at random; these tests show what it cannot: which write goes first when not all fit.
 
+#include "server/store/backup.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
 #include "tests/fault/store/fault_disk.h"
@@ -60,6 +61,17 @@ TEST_F(DiskFailure, ADiskErrorAtTheStartIsNotReportedAsDamage) {
     disk.StopRefusing();
     EXPECT_OK(Store::Open(kStorePath, {}));
   }
+}
+
+// Another program makes the file while the store is being copied.
+TEST_F(DiskFailure, ABackupDoesNotReplaceAFile) {
+  Open();  // makes the store
+  const TemporaryFolder folder;
+  disk_.SetBeforeOperation([&] { WriteFile(folder.File("copy"), "precious"); });
+  EXPECT_THAT(BackupStore(kStorePath, folder.File("copy")),
+              StatusIs(absl::StatusCode::kAlreadyExists));
+  EXPECT_EQ(Contents(folder.File("copy")), "precious");
+  EXPECT_EQ(NamesIn(folder.path()).size(), 1u);
 }
 
 // The request is refused because of a result in its group. The result does not fit on the disk, so
