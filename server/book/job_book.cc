@@ -89,6 +89,9 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
                                                 const v1::CreateEnsembleJobRequest& request,
                                                 const CheckedSpec& checked) {
   Acceptance acceptance = NewAcceptance(caller, request, checked);
+  RunRequest run;  // made before the commit, because it may take much memory
+  run.spec = checked.spec;
+  run.finished.assign(PointCount(run.spec), false);
   std::shared_ptr<Job> job;  // the new job, if there is one
   const auto earlier = store_.Commit([&](Database& database) {
     auto found = Accept(database, limits_, acceptance);
@@ -100,17 +103,10 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
   if (!earlier.ok() || *earlier) active_.Remove(acceptance.record.id);
   if (!earlier.ok()) return StoreFailure(earlier.status());
   if (*earlier) return Answer(caller, **earlier);
-  StartRun(job, checked);
-  Failpoint("create.before_answer");
-  return Answer(caller, acceptance.record);
-}
-
-void JobBook::StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked) {
-  RunRequest run;
-  run.spec = checked.spec;
-  run.finished.assign(PointCount(run.spec), false);
   run.has_checkpoints = !job->row().job.continues().empty();
   active_.StartRun(job, std::move(run));
+  Failpoint("create.before_answer");
+  return Answer(caller, acceptance.record);
 }
 
 // Tells the scheduler the job's present state, and returns it. The row is read again, because

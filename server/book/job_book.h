@@ -127,7 +127,7 @@ class JobBook {
                                               size_t limit) const;
 
   // The finished points after number `after`, in order, at most `limit`; fewer if they are large.
-  // `active` is null if the job has ended. No points: there are no more.
+  // `active` is null if the job has ended. No points: there are no more, or they have expired.
   absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(const JobRecord& record,
                                                            const Job* active, int64_t after,
                                                            size_t limit);
@@ -150,7 +150,6 @@ class JobBook {
                            const CheckedSpec& checked) const;
   absl::StatusOr<v1::EnsembleJob> Answer(const Principal& caller, const JobRecord& record);
   void TellScheduler(const JobRecord& row);
-  void StartRun(const std::shared_ptr<Job>& job, const CheckedSpec& checked);
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id, Grid grid);
   // Adds the numbers in memory. If the job has ended since its row was read, reads the row again.
   absl::StatusOr<FoundJob> WithNumbers(const Principal& caller, JobRecord record, Grid grid);

@@ -165,7 +165,7 @@ absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(const JobRecor
   // A point that the job does not have yet would give a token that the job does not know.
   const int64_t last = active ? active->last_finished() : std::numeric_limits<int64_t>::max();
   std::vector<FinishedPoint> points;
-  if (last <= after) return points;
+  if (last <= after || record.job.results_expired()) return points;
   // They are parsed after the read, because all watches share a few connections that read.
   std::vector<std::pair<int64_t, std::string>> stored;
   size_t bytes = 0;

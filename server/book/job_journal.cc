@@ -151,7 +151,7 @@ void JobJournal::Began() {
 }
 
 absl::StatusOr<StoredPoint> JobJournal::ReadPoint(size_t point) {
-  return store_.Read([&](Database& database) {
+  absl::StatusOr<StoredPoint> read = store_.Read([&](Database& database) {
     StoredPoint stored;
     const int64_t sequence = job_->row().sequence;
     const auto index = static_cast<int64_t>(point);
@@ -164,6 +164,8 @@ absl::StatusOr<StoredPoint> JobJournal::ReadPoint(size_t point) {
     if (!stored.state) stored.earlier = ReadEarlier(database, job_->row().job.continues(), index);
     return stored;
   });
+  if (absl::IsUnavailable(read.status())) store_.AwaitRetry();
+  return read;
 }
 
 uint64_t JobJournal::Merged(const MergedSamples& merged) {

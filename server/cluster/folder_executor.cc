@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "core/ensemble/experiment_kind.h"
 #include "server/host.h"
@@ -157,6 +158,7 @@ void FolderExecutor::NoteTaken(const LeaseFileName& file) {
 bool FolderExecutor::Report(const LeaseFileName& file) {
   const auto found = leases_.find(file.lease);
   Laid* const laid = found == leases_.end() ? nullptr : &found->second;
+  if (earlier_.contains(file.lease)) return true;
   const size_t offset = laid == nullptr ? 0 : laid->reported;
   const std::string path =
       laid != nullptr && !file.outcome ? file.Taken() : file.Done(*file.outcome);
@@ -164,6 +166,7 @@ bool FolderExecutor::Report(const LeaseFileName& file) {
   if (absl::IsUnavailable(bytes.status()) || absl::IsNotFound(bytes.status())) return false;
   const absl::Status status = bytes.ok() ? ReportBytes(*bytes, laid) : bytes.status();
   if (absl::IsUnavailable(status)) return false;
+  if (laid == nullptr) earlier_.insert(file.lease);
   if (!status.ok() && (file.outcome || !absl::IsOutOfRange(status))) {
     Refuse(absl::Status(status.code(), absl::StrCat(path, ": ", status.message())));
   }
@@ -213,8 +216,10 @@ absl::Status FolderExecutor::ReportChunks(const Lease& lease, absl::string_view&
 // Its chunks are on disk.
 void FolderExecutor::End(const LeaseFileName& file) {
   const absl::Status removed = files_->Remove(file.Done(*file.outcome));
+  if (!removed.ok() && !absl::IsNotFound(removed)) return;
+  earlier_.erase(file.lease);
   const auto found = leases_.find(file.lease);
-  if (found == leases_.end() || (!removed.ok() && !absl::IsNotFound(removed))) return;
+  if (found == leases_.end()) return;
   const Lease& lease = found->second.lease;
   if (*file.outcome == Outcome::kCrashed) {
     LogError(absl::StrCat("cluster folder: the engine crashed in worker ", file.worker));
@@ -313,24 +318,23 @@ absl::Status FolderExecutor::LaySome() {
 }
 
 absl::Status FolderExecutor::LayOne(Lease lease) {
+  absl::Cleanup give_back = [&] { scheduler_.Return(lease, false); };  // also after an exception
   const Pace pace = PaceOf(options_, leases_.size());
   const LeaseFileName file = {absl::StrCat(process_, "-", ++laid_)};
   const std::string bytes = BytesOf(LeaseRecord(lease, server_.identity, pace.touch));
   // The folder may have changed while there was no work.
   const absl::Status ready = leases_.empty() ? server_.prepare() : absl::OkStatus();
   const absl::StatusOr<FileStamp> stamp = ready.ok() ? WriteLease(*files_, file, bytes) : ready;
-  if (!stamp.ok()) {
-    scheduler_.Return(lease, false);
-    return stamp.status();
-  }
+  if (!stamp.ok()) return stamp.status();
   Failpoint("cluster.laid");
   const Clock::time_point now = SteadyNow();
-  leases_.emplace(file.lease, Laid{.lease = std::move(lease),
+  leases_.emplace(file.lease, Laid{.lease = lease,
                                    .pace = pace,
                                    .alive = now,
                                    .looked = now,
                                    .stamp = *stamp,
                                    .reported = bytes.size()});
+  std::move(give_back).Cancel();
   return absl::OkStatus();
 }
 

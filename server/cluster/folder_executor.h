@@ -24,6 +24,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -136,7 +137,8 @@ class FolderExecutor {
 
   // Used only by the thread that looks.
   Leases leases_;
-  size_t taken_ = 0;  // of these
+  size_t taken_ = 0;               // of these
+  std::set<std::string> earlier_;  // leases of earlier processes that are reported, not removed yet
   uint64_t laid_ = 0;
   std::optional<Clock::time_point> prepared_;
   Clock::time_point next_look_ = {};

@@ -144,7 +144,7 @@ std::optional<Lease> Run::NextOpening() {
   }
   if (lease.opens.empty()) return std::nullopt;
   lease.stop = stop_opening_.get_token();
-  ++opening_;
+  opening_.insert(lease.opens.begin(), lease.opens.end());
   return Completed(std::move(lease));
 }
 
@@ -154,6 +154,7 @@ void Run::PointOpened(size_t point, std::unique_ptr<OpenPoint> open) {
   if (stopped_) open->RequestStop();
   sampled_points_ += 1;
   sampled_seconds_ += open->ExpectedSeconds();
+  opening_.erase(point);
   open_.emplace(point, std::move(open));
   leasable_.insert(point);
 }
@@ -174,7 +175,8 @@ void Run::PilotIsKnown(const PilotPlace& place) {
 
 bool Run::IsUnopened(size_t point) const {
   if (stopped_ || point >= taken_.size()) return false;
-  return reopen_.contains(point) || (point >= next_point_ && !taken_[point]);
+  return reopen_.contains(point) || opening_.contains(point) ||
+         (point >= next_point_ && !taken_[point]);
 }
 
 OpenPoint* Run::Find(const Lease& lease) const {
@@ -209,6 +211,7 @@ void Run::HasChunks(const Lease& lease) {
 
 void Run::NoteProgress(size_t point) {
   has_progressed_ = true;
+  opening_.erase(point);
   if (request_.suspicion) request_.suspicion->points.erase(point);
 }
 
@@ -319,7 +322,7 @@ void Run::Stop(absl::Status reason) {
 bool Run::over() const {
   if (turns_ > 0) return false;
   const bool nothing_left =
-      open_.empty() && pilots_.empty() && waiting_.empty() && opening_ == 0 && !HasPointsToOpen();
+      open_.empty() && pilots_.empty() && opening_.empty() && !HasPointsToOpen();
   return stopped_ || nothing_left;
 }
 

@@ -98,16 +98,15 @@ class Run {
   void TurnEnds() { --turns_; }
   bool HasTurns() const { return turns_ > 0; }
 
-  // A lease to open points reports for each of its points that it is open or finished, or that it
-  // waits for a pilot. Then OpeningEnded ends the lease.
+  // A lease to open points reports for each of its points that it is open or finished (with
+  // NoteProgress), or that it waits for a pilot.
   void PointOpened(size_t point, std::unique_ptr<OpenPoint> open);
   void PointAwaits(size_t point, const PilotPlace& place);
-  void OpeningEnded() { --opening_; }
   void PilotOpened(const PilotPlace& place, std::unique_ptr<OpenPoint> open);
   // The points that wait for this pilot are to be opened again.
   void PilotIsKnown(const PilotPlace& place);
 
-  // Whether the point is still to be opened.
+  // Whether the point is still to be opened, or is being opened.
   bool IsUnopened(size_t point) const;
 
   // Chunks of the lease that are still needed go out again, as this attempt.
@@ -177,10 +176,10 @@ class Run {
   std::map<PilotPlace, std::unique_ptr<OpenPoint>> pilots_;
   std::set<size_t> leasable_;  // open points that may have chunks to lease
   std::map<PilotPlace, std::vector<size_t>> waiting_;
-  std::set<size_t> reopen_;  // points whose pilot is known now, and those of a suspicion
-  std::vector<bool> taken_;  // by point: finished, or not to be opened in grid order
-  size_t next_point_ = 0;    // in grid order
-  size_t opening_ = 0;       // leases that open points
+  std::set<size_t> reopen_;   // points whose pilot is known now, and those of a suspicion
+  std::vector<bool> taken_;   // by point: finished, or not to be opened in grid order
+  size_t next_point_ = 0;     // in grid order
+  std::set<size_t> opening_;  // points that are being opened or wait for a pilot
   size_t turns_ = 0;
   double awaited_memory_ = 0;
   bool hungry_elsewhere_ = false;  // an executor that is not local found nothing

@@ -44,7 +44,8 @@ class RunJournal {
   // The run's first turn begins.
   virtual void Began() = 0;
 
-  // What an earlier process stored of an unfinished point, or an earlier job of the same point.
+  // What an earlier process stored of an unfinished point, or an earlier job of the same point. May
+  // be slow. UNAVAILABLE: try again now.
   virtual absl::StatusOr<StoredPoint> ReadPoint(size_t point) = 0;
 
   // The scheduler holds its lock during this call and the next three, so they must be quick, must

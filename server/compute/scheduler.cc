@@ -212,7 +212,7 @@ void Scheduler::EndTurn(const Lease& lease, double seconds) {
     run->journal().Worked(seconds);
     run->TurnEnds();
     SharesOf(lease).TurnEnds(lease.run, seconds);
-    lease.OpensPoints() ? run->OpeningEnded() : held_.EndTurn(lease);
+    if (!lease.OpensPoints()) held_.EndTurn(lease);
   }
   Wake();
   ClearIfRefuted(run);
@@ -248,13 +248,16 @@ bool Scheduler::Needs(const Lease& lease) const {
 // ---- opening points ----
 
 void Scheduler::Open(const Lease& lease, size_t point) {
-  if (lease.stop.stop_requested()) return;
   RunPointer run;
   {
     MutexLock lock(mutex_);
     run = FindRun(lease.run);
   }
-  absl::Status opened = Guarded(point, [&] { return OpenOne(*run, point); });
+  absl::Status opened;
+  do {
+    if (lease.stop.stop_requested()) return;
+    opened = Guarded(point, [&] { return OpenOne(*run, point); });
+  } while (absl::IsUnavailable(opened));  // as RunJournal::ReadPoint says
   if (!opened.ok()) Stop(lease.run, std::move(opened));
 }
 

@@ -140,8 +140,10 @@ class Watch {
     if (!told.ok() || *told) return told;
     absl::StatusOr<v1::EnsembleJob> job = book_.Get(reader_.caller(), id_, Grid::kLeftOut);
     if (!job.ok()) return job.status();
-    // If the results expired since the job was found, some points may not have been sent.
-    if (job->results_expired() && !job_.record.job.results_expired()) {
+    // The watch of a job whose results had expired before has no points.
+    const bool has_points = told_finished_ > 0 || !job_.record.job.results_expired();
+    const bool is_complete = told_finished_ == job->progress().points_done();
+    if (job->results_expired() && has_points && !is_complete) {
       return ResultsExpired(request_.name());
     }
     *message_.mutable_job() = *std::move(job);
@@ -176,7 +178,7 @@ class Watch {
     v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
     *snapshot.mutable_progress() =
         active != nullptr ? ProgressOf(record.job, active->Numbers()) : record.job.progress();
-    auto finished = book_.FinishedAfter(job_.record, active, told_finished_, kMaxPoints);
+    auto finished = book_.FinishedAfter(record, active, told_finished_, kMaxPoints);
     if (!finished.ok()) return finished.status();
     for (FinishedPoint& point : *finished) {
       *snapshot.add_finished_points() = std::move(point.result);

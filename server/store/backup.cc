@@ -27,14 +27,18 @@ absl::Status CannotWrite(const std::string& target, int error) {
   return absl::PermissionDeniedError(what);
 }
 
+absl::Status CheckIsFree(const std::string& target) {
+  struct stat found {};
+  if (lstat(target.c_str(), &found) != 0) return absl::OkStatus();
+  return absl::AlreadyExistsError(
+      absl::StrCat("backup ", target, ": the file exists already; choose another name"));
+}
+
 }  // namespace
 
 absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::string& target) {
-  struct stat found {};
-  if (lstat(target.c_str(), &found) == 0) {
-    return absl::AlreadyExistsError(
-        absl::StrCat("backup ", target, ": the file exists already; choose another name"));
-  }
+  absl::Status is_free = CheckIsFree(target);
+  if (!is_free.ok()) return is_free;
   const auto source = OpenStoreToRead(store);
   if (!source.ok()) return source.status();
   std::string copy = target + ".XXXXXX";
@@ -53,8 +57,10 @@ absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::st
                                             " is damaged (", summary->problems.front(),
                                             "); see --check"));
   }
-  const bool is_placed = fsync(file) == 0 && rename(copy.c_str(), target.c_str()) == 0;
-  if (!is_placed) return CannotWrite(target, errno);
+  if (fsync(file) != 0) return CannotWrite(target, errno);
+  is_free = CheckIsFree(target);  // again: the copy may have taken minutes
+  if (!is_free.ok()) return is_free;
+  if (rename(copy.c_str(), target.c_str()) != 0) return CannotWrite(target, errno);
   const absl::Status synced = SyncNameOf(target);
   if (!synced.ok()) return synced;
   return summary;

@@ -182,6 +182,12 @@ void Store::AwaitRoom() {
   while (!stop_waiting_ && !closing_ && IsFull()) written_.Wait(mutex_);
 }
 
+void Store::AwaitRetry() {
+  const Clock::time_point end = SteadyNow() + options_.retry;
+  MutexLock lock(mutex_);
+  while (!stop_waiting_ && !closing_ && SteadyNow() < end) written_.WaitUntil(mutex_, end);
+}
+
 void Store::StopWaiting() {
   MutexLock lock(mutex_);
   stop_waiting_ = true;

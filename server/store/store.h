@@ -114,6 +114,10 @@ class Store {
   // Returns when few enough writes are pending, or the store is closing.
   void AwaitRoom();
 
+  // Returns after Options::retry, or when the store is closing. For a read that failed because of
+  // the disk.
+  void AwaitRetry();
+
   // When this returns OK, all records posted before the call are on disk. Returns UNAVAILABLE if
   // the disk fails or hangs.
   absl::Status Flush();
@@ -127,7 +131,7 @@ class Store {
   // The store's thread has been at one group for longer than Options::stall: the disk hangs.
   bool stalled() const;
 
-  // For a shutdown: AwaitRoom no longer waits.
+  // For a shutdown: AwaitRoom and AwaitRetry no longer wait.
   void StopWaiting();
 
   // Writes what is pending, without a retry, and ends the thread. Later writes fail.

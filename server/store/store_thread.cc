@@ -1,8 +1,8 @@
 // The store's thread: it chooses the next writes, commits them in groups, and tells the outcomes.
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <new>
+#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -53,22 +53,24 @@ bool Store::AwaitWork() {
   return !closing_ || !waiting_.empty();
 }
 
-// Drops each checkpoint whose point has a later waiting write. A cluster reports many chunks of a
-// point at a time, each with a checkpoint; if all of them were written, the chunks of first-hit
-// that arrive in order would be accepted at a third of the rate (scheduler_benchmark). And while
-// the disk fails, waiting checkpoints would soon take all the room of AwaitRoom, and the threads
-// would stop computing.
+// Drops each checkpoint whose point has a later waiting write, with no request between them: the
+// group may end at a request, and a flush promises all earlier records. A cluster reports many
+// chunks of a point at a time, each with a checkpoint; if all of them were written, the chunks of
+// first-hit that arrive in order would be accepted at a third of the rate (scheduler_benchmark).
+// And while the disk fails, waiting checkpoints would soon take all the room of AwaitRoom, and the
+// threads would stop computing.
 void Store::DropSuperseded() {
   const auto is_checkpoint = [](const Write& write) { return write.kind == Kind::kCheckpoint; };
   if (std::ranges::none_of(waiting_, is_checkpoint)) return;  // closed forms have none
-  std::map<std::pair<int64_t, int64_t>, const Write*> last;   // of each point
-  for (const Write& write : waiting_) last[{write.job, write.point}] = &write;
-  std::erase_if(waiting_, [&](const Write& write) {
-    mutex_.AssertHeld();
-    const bool is_superseded = is_checkpoint(write) && last[{write.job, write.point}] != &write;
-    if (is_superseded) bytes_ -= write.bytes;
-    return is_superseded;
-  });
+  std::set<std::pair<int64_t, int64_t>> later;                // points of the writes after `write`
+  for (auto write = waiting_.end(); write != waiting_.begin();) {
+    --write;
+    if (write->IsRequest()) later.clear();
+    const bool is_last = later.emplace(write->job, write->point).second;
+    if (is_last || !is_checkpoint(*write)) continue;
+    bytes_ -= write->bytes;
+    write = waiting_.erase(write);
+  }
 }
 
 Store::Writes Store::TakeGroup() {
@@ -81,7 +83,10 @@ Store::Writes Store::TakeGroup() {
   size_t bytes = 0;
   for (auto next = waiting_.begin(); next != waiting_.end();) {
     const auto write = next++;
-    if (!all && !write->IsRequest()) continue;
+    if (!all && !write->IsRequest()) {
+      write->has_waited = failing_;
+      continue;
+    }
     bytes += write->bytes;
     if (!group.empty() && bytes > most) break;
     requests_ -= write->IsRequest() ? 1 : 0;
@@ -261,12 +266,12 @@ void Store::Settle(const Writes& group) {
 }
 
 // Logs a failure once, and again only if the failure changes. The disk works again when no record
-// that waited is left: on a full disk, a small group may fit.
+// that waited is left: on a full disk, a small group may fit. A close drops records that fail.
 void Store::NoteHealth(const absl::Status& status) {
   MutexLock lock(mutex_);
   if (status.ok()) {
     ++counts_.commits;
-    const bool works = std::ranges::none_of(waiting_, &Write::has_waited);
+    const bool works = !closing_ && std::ranges::none_of(waiting_, &Write::has_waited);
     if (!failing_ || !works) return;
     failing_ = false;
     failure_.clear();

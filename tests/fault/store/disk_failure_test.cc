@@ -1,6 +1,7 @@
 // The store on a disk that rejects writes or is full. The simulation (tests/simulation) fails the
 // disk at random; these tests show what it cannot: which write goes first when not all fit.
 
+#include "server/store/backup.h"
 #include "server/store/job_table.h"
 #include "server/store/store.h"
 #include "tests/fault/store/fault_disk.h"
@@ -62,6 +63,17 @@ TEST_F(DiskFailure, ADiskErrorAtTheStartIsNotReportedAsDamage) {
   }
 }
 
+// Another program makes the file while the store is being copied.
+TEST_F(DiskFailure, ABackupDoesNotReplaceAFile) {
+  Open();  // makes the store
+  const TemporaryFolder folder;
+  disk_.SetBeforeOperation([&] { WriteFile(folder.File("copy"), "precious"); });
+  EXPECT_THAT(BackupStore(kStorePath, folder.File("copy")),
+              StatusIs(absl::StatusCode::kAlreadyExists));
+  EXPECT_EQ(Contents(folder.File("copy")), "precious");
+  EXPECT_EQ(NamesIn(folder.path()).size(), 1u);
+}
+
 // The request is refused because of a result in its group. The result does not fit on the disk, so
 // the request runs again without it.
 TEST_F(DiskFailure, ARefusalIsNotToldIfItsGroupFails) {
@@ -102,6 +114,56 @@ TEST_F(DiskFailure, OnAFullDiskRequestsGoBeforeRecordsThatDoNotFit) {
   disk_.StopRefusing();
   AwaitWritten(*store);
   EXPECT_EQ(store->counts().pending_writes, 0);
+}
+
+// A request does not fit while the space of a deleted job is being freed. A record that comes
+// during this failure waits until the space is free, and a flush does not promise it before.
+TEST_F(DiskFailure, OnAFullDiskAFlushFailsWhileARecordWaitsForFreedSpace) {
+  const auto store = Open({.reserve_bytes = 0});
+  RecordLargeJob(*store, 7);
+  AwaitWritten(*store);
+  LeaveRoomFor(200'000);
+  std::promise<void> flushed;
+  const std::shared_future<void> has_flushed = flushed.get_future().share();
+  std::thread request, flush;
+  const auto change = [&](Database& database) {
+    if (store->failing() && !flush.joinable()) {  // the second attempt, alone
+      store->Record([&](Database&) { has_flushed.wait(); });
+      flush = std::thread([&] {
+        EXPECT_FALSE(store->Flush().ok());
+        flushed.set_value();
+      });
+      AwaitThat([&] { return store->counts().pending_writes == 4; });  // with a step of the sweeper
+    }
+    InsertChunk(database, 9, 0, 0, std::string(400'000, 'x'));
+  };
+  ASSERT_OK(store->CommitDeletion([&](Database& database) {
+    DeleteJob(database, 7);
+    request = std::thread([&] { EXPECT_FALSE(store->Commit(change).ok()); });
+    AwaitThat([&] { return store->counts().pending_writes == 2; });
+  }));
+  request.join();
+  ASSERT_TRUE(flush.joinable());
+  flush.join();
+  AwaitWritten(*store);
+}
+
+// The store is closed before the record fits.
+TEST_F(DiskFailure, AFlushIsNotOkIfItsRecordsAreDropped) {
+  const auto store = Open({.max_pending_bytes = 1000, .reserve_bytes = 0});
+  LeaveRoomFor(100'000);
+  std::promise<void> has_record;
+  const auto post = [&](const absl::Status&) {
+    RecordResult(*store, 0, 400'000);
+    has_record.set_value();
+    store->AwaitRoom();  // there is none: until the store is being closed
+  };
+  store->RecordSoon([](Database&) {}, post);
+  has_record.get_future().wait();
+  std::thread flushing([&] { EXPECT_FALSE(store->Flush().ok()); });
+  AwaitThat([&] { return store->counts().pending_writes == 2; });
+  store->Close();
+  flushing.join();
 }
 
 // Some of many records fit. The store writes them in smaller groups.

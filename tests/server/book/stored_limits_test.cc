@@ -1,4 +1,5 @@
 // How long results are kept. The test sets the time.
+#include "server/rpc/watch.h"
 #include "server/store/check_store.h"
 #include "server/store/sweeper.h"
 #include "tests/server/book/book_test.h"
@@ -8,6 +9,22 @@ namespace ballpiston::server {
 namespace {
 
 constexpr absl::Duration kDay = absl::Hours(24);
+
+// Keeps the messages of a watch.
+struct KeepingReader : WatchReader {
+  const Principal& caller() const override { return kRoot; }
+  absl::Status Proceed() override { return absl::OkStatus(); }
+  std::chrono::steady_clock::time_point next_check() const override {
+    return std::chrono::steady_clock::time_point::max();
+  }
+  int64_t watches() const override { return 1; }
+  bool Write(const v1::WatchEnsembleJobResponse& message) override {
+    messages.push_back(message);
+    return true;
+  }
+
+  std::vector<v1::WatchEnsembleJobResponse> messages;
+};
 
 class StoredLimitsTest : public BookTest {
  protected:
@@ -28,6 +45,18 @@ class StoredLimitsTest : public BookTest {
 
   std::string ResultsError(const std::string& id) {
     return ReasonOf(book_->Results(kAnn, id, {.max_points = 10}).status());
+  }
+
+  // Watches the job to its end. Returns the messages, or the error.
+  absl::StatusOr<std::vector<v1::WatchEnsembleJobResponse>> Watched(
+      const std::string& id, const std::string& resume_token = "") {
+    v1::WatchEnsembleJobRequest request;
+    request.set_name(JobName(id));
+    request.set_resume_token(resume_token);
+    KeepingReader reader;
+    const absl::Status status = RunWatch(*book_, WatchTiming(), "this process", request, reader);
+    if (!status.ok()) return status;
+    return reader.messages;
   }
 
   void ExpectSound() {
@@ -84,6 +113,27 @@ TEST_F(StoredLimitsTest, AJobThatWasPinnedMeanwhileDoesNotExpire) {
   }));
   EXPECT_FALSE(Get(id).results_expired());
   EXPECT_EQ(PointsOf(id), 3u);
+}
+
+// The results are still there: the sweeper does not know yet that they have expired, because they
+// expire in a commit that is not a deletion.
+TEST_F(StoredLimitsTest, AWatchOfExpiredResultsHasNoPartOfThem) {
+  Start();
+  const std::string id = Done(kAnn, 1, 200);
+  ASSERT_OK_AND_ASSIGN(const auto whole, Watched(id));
+  ASSERT_THAT(whole, testing::SizeIs(3));  // 100 points, 100 points, the end
+  ASSERT_OK(store_->Commit([&](Database& database) {
+    ExpireJob(database, FindJob(database, id, Grid::kLeftOut)->sequence);
+  }));
+  ASSERT_OK_AND_ASSIGN(const FoundJob found, book_->Find(kRoot, id, Grid::kLeftOut));
+  ASSERT_OK_AND_ASSIGN(const auto points, book_->FinishedAfter(found.record, nullptr, 0, 100));
+  EXPECT_THAT(points, testing::IsEmpty());
+  for (const std::string& token : {std::string(), whole.back().resume_token()}) {
+    ASSERT_OK_AND_ASSIGN(const auto end, Watched(id, token));
+    ASSERT_THAT(end, testing::SizeIs(1));
+    EXPECT_TRUE(end.back().job().results_expired());
+  }
+  EXPECT_EQ(ReasonOf(Watched(id, whole[0].resume_token()).status()), "RESULTS_EXPIRED");
 }
 
 // The oldest results expire first. Then expired jobs are deleted. If pinned jobs still take too

@@ -133,8 +133,8 @@ TEST_F(FolderExecutorTest, ALeaseThatAKilledServerWasWritingIsRemoved) {
   EXPECT_THAT(In("todo"), SizeIs(2));
 }
 
-// The file in taken/ is moved away, so that its worker stops. The point is not open yet when the
-// later process looks for the first time.
+// The file in taken/ is moved away, so that its worker stops. The later process looks before it
+// opens the point, and again while it opens it.
 TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReported) {
   const EnsembleSpec spec = SomeSpec();
   Begin(spec);
@@ -147,10 +147,38 @@ TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReported) {
   executor_->Look();
   EXPECT_THAT(In("taken"), IsEmpty());
   EXPECT_THAT(In("done"), ElementsAre(taken + ".lost"));
-  EXPECT_TRUE(local_->TakeTurn());  // opens the point
+  const std::optional<Lease> opening = local_->Begin();
+  executor_->Look();
+  EXPECT_THAT(In("done"), ElementsAre(taken + ".lost"));
+  local_->End(*opening, 0);
   executor_->Look();
   EXPECT_THAT(In("done"), IsEmpty());
   EXPECT_EQ(executor_->Status().chunks, 1);
+  ComputeAll(*journal);
+}
+
+// It stays while the disk fails, and while it cannot be removed.
+TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReportedAndChargedOnce) {
+  Begin();
+  const std::string taken = Take(In("todo")[0]);
+  Compute(taken);
+  End(taken);
+  Restart();
+  flush_ = absl::UnavailableError("the disk is slow");
+  const auto journal = Begin();
+  executor_->Look();
+  flush_ = absl::OkStatus();
+  files_.before = [](const std::string& operation, const std::string&) {
+    return operation == "remove" ? absl::UnavailableError("slow, too") : absl::OkStatus();
+  };
+  executor_->Look();
+  executor_->Look();
+  EXPECT_THAT(In("done"), ElementsAre(taken + ".finished"));
+  files_.before = nullptr;
+  executor_->Look();
+  EXPECT_THAT(In("done"), IsEmpty());
+  EXPECT_EQ(executor_->Status().chunks, 1);
+  EXPECT_EQ(journal->work, 1);
   ComputeAll(*journal);
 }
 
@@ -257,6 +285,19 @@ TEST_F(FolderExecutorTest, ALeaseThatCannotBeMovedLeavesNoFile) {
   Begin();
   EXPECT_EQ(executor_->Status().problem, "full");
   EXPECT_THAT(files_.files, IsEmpty());
+}
+
+TEST_F(FolderExecutorTest, ALeaseGoesBackIfItsFileRunsOutOfMemory) {
+  bool has_memory = false;
+  files_.before = [&](const std::string& operation, const std::string&) {
+    if (operation == "create" && !std::exchange(has_memory, true)) throw std::bad_alloc();
+    return absl::OkStatus();
+  };
+  const auto journal = Begin();
+  EXPECT_NE(executor_->Status().problem, "");
+  executor_->Look();
+  EXPECT_EQ(executor_->Status().problem, "");
+  ComputeAll(*journal);
 }
 
 // ---- many workers ----

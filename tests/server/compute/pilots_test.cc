@@ -81,6 +81,14 @@ TEST_F(PilotsTest, APilotIsComputedOnceForAllRuns) {
   EXPECT_EQ(opener().kept[0].difference, PilotOf(pilot, FoldPoint(pilot)).difference);
 }
 
+// Chunks of an earlier process, which knew the pilot.
+TEST_F(PilotsTest, ChunksOfAPointThatWaitsForAPilotAreToBeReportedLater) {
+  AddRun(1);
+  Turns(1, 1);  // the point waits now
+  EXPECT_THAT(scheduler_.Report({.run = 1, .local = false, .point = 0}, {}),
+              StatusIs(absl::StatusCode::kUnavailable));
+}
+
 TEST_F(PilotsTest, AnotherRunComputesThePilotIfItsRunIsCancelled) {
   const auto first = AddRun(1);
   for (std::optional<Lease> lease = local_.Begin();; lease = local_.Begin()) {

@@ -51,6 +51,16 @@ TEST_F(SchedulerTest, ACheckpointOfAnotherShapeEndsTheRun) {
   EXPECT_TRUE(journal->finished.empty());
 }
 
+TEST_F(SchedulerTest, ACheckpointThatCannotBeReadNowIsReadAgain) {
+  const EnsembleSpec spec = FakeSpec(1, 3);
+  const auto journal = std::make_shared<RecordingJournal>();
+  journal->stored[0] = FakeState(spec, 0, 2);
+  journal->unreadable = 2;
+  scheduler_.Add(RunOf(1, spec, journal));
+  local_.TakeAllTurns();
+  ExpectComplete(spec, *journal);
+}
+
 // ---- budgets and tolerances ----
 
 // This budget is spent when the first block is merged, on every machine.

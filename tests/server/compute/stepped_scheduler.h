@@ -18,6 +18,10 @@ class RecordingJournal : public RunJournal {
   void Began() override {}
 
   absl::StatusOr<StoredPoint> ReadPoint(size_t point) override {
+    if (unreadable > 0) {
+      --unreadable;
+      return absl::UnavailableError("the disk cannot be read");
+    }
     const auto state = stored.find(point);
     return state == stored.end() ? StoredPoint() : StoredPoint{.state = state->second};
   }
@@ -64,6 +68,7 @@ class RecordingJournal : public RunJournal {
   }
 
   std::map<size_t, FoldState> stored;  // set before the run: what an earlier process stored
+  int unreadable = 0;                  // so many reads of a point fail
   std::mutex mutex;
   std::condition_variable changed;
   int ends = 0;

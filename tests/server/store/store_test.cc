@@ -255,6 +255,27 @@ TEST_F(StoreTest, CheckpointsOfAFinishedPointAreNeitherWrittenNorKept) {
   EXPECT_EQ(Checkpoint(*store, 1, 5), "other");
 }
 
+// The second checkpoint does not fit into the flush's group.
+TEST_F(StoreTest, AFlushWritesACheckpointThatALaterOneReplaces) {
+  std::promise<void> has_first, is_checked;
+  const auto store = Open({.delay = kUnreachedLimit});
+  const auto post = [&](const absl::Status&) {
+    store->RecordCheckpoint(1, 0, 1, [] { return "first"; });
+    has_first.set_value();
+    AwaitThat([&] { return store->counts().pending_writes == 2; });  // the checkpoint and the flush
+    const auto second = [&]() -> std::string {
+      is_checked.get_future().wait();
+      return "second";
+    };
+    store->RecordCheckpoint(1, 0, 2, second, 3 << 20);
+  };
+  store->RecordSoon([](Database&) {}, post);
+  has_first.get_future().wait();
+  EXPECT_OK(store->Flush());
+  EXPECT_EQ(Checkpoint(*store, 1, 0), "first");
+  is_checked.set_value();
+}
+
 // Else the next reader would get a connection whose transaction is open.
 TEST_F(StoreTest, AReadThatThrowsEndsItsTransaction) {
   const auto store = Open({.readers = 1});
@@ -265,6 +286,12 @@ TEST_F(StoreTest, AReadThatThrowsEndsItsTransaction) {
   const auto run_out_of_memory = [](Database&) { throw std::bad_alloc(); };
   EXPECT_THROW(store->Read(run_out_of_memory).IgnoreError(), std::bad_alloc);
   EXPECT_OK(store->Read(count));
+}
+
+TEST_F(StoreTest, AShutdownWaitsForNoRetry) {
+  const auto store = Open({.retry = kUnreachedLimit});
+  store->StopWaiting();
+  store->AwaitRetry();
 }
 
 // Two groups: each result has more bytes than half a group.
