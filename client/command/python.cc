@@ -108,8 +108,10 @@ absl::Status CheckPython(const std::string& purpose, const std::vector<std::stri
   };
   const std::string all = absl::StrJoin(modules, ", ");
   if (can_import(all)) return absl::OkStatus();
-  if (setenv("BALLPISTON_PYTHON", "/usr/bin/python3", 0) == 0 && can_import(all)) {
-    return absl::OkStatus();
+  if (FromEnvironment("BALLPISTON_PYTHON").empty()) {
+    setenv("BALLPISTON_PYTHON", "/usr/bin/python3", 1);
+    if (can_import(all)) return absl::OkStatus();
+    unsetenv("BALLPISTON_PYTHON");  // the message names python3
   }
   std::vector<std::string> missing = modules;
   std::erase_if(missing, can_import);

@@ -145,7 +145,7 @@ class Destination {
 
   v1::ListResultsRequest::View view() const { return ViewFor(FormatOf(options_)); }
   ResultWriter& writer() { return *writer_; }
-  bool accepts() { return out().good(); }  // no write failed, nobody closed the pipe
+  bool accepts() { return out().good(); }  // false after a failed write or a closed pipe
 
   // Prints the path of the file, once the file is complete.
   absl::Status Finish() {

@@ -229,7 +229,7 @@ const FlagGroup kClosedForms = {
      {"--epsilon", Asked(&v1::EvaluatePairsRequest::mutable_epsilon),
       "the piston's energies, 0 to 1/2: conditional rates, and moments of the kernel"},
      {"--outgoing-epsilon", Asked(&v1::EvaluatePairsRequest::mutable_outgoing_epsilon),
-      "outgoing energies: the kernel W; not in CSV"},
+      "outgoing energies: the kernel W"},
      {"--temperature", Asked(&v1::EvaluatePairsRequest::mutable_temperature),
       "temperatures: canonical averages, exchange rate, static conductivity"},
      {"--beta", Asked(&v1::EvaluatePairsRequest::mutable_beta),

@@ -106,9 +106,9 @@ absl::Status NewFile::Flush() {
 absl::Status NewFile::Keep() {
   if (absl::Status written = Flush(); !written.ok()) return written;
   if (part_.empty()) return absl::OkStatus();
-  const std::lock_guard lock(AllUnfinished().mutex);
   // Some network file systems report a full disk only here.
   if (fsync(descriptor_) != 0) return CannotWrite(flag_, path_, std::strerror(errno));
+  const std::lock_guard lock(AllUnfinished().mutex);
   std::error_code error;
   fs::rename(part_, file_, error);
   if (error) return CannotWrite(flag_, path_, error.message());

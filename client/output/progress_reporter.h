@@ -30,7 +30,7 @@ bool HasTerminal();
 
 class ProgressReporter {
  public:
-  // kAuto is kBar with such a terminal, else kNone. `name` is the job's name. `err` must
+  // kAuto is kBar if HasTerminal(), else kNone. `name` is the job's name. `err` must
   // outlive the reporter.
   ProgressReporter(ProgressStyle style, std::ostream& err, absl::string_view name);
 

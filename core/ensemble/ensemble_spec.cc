@@ -32,13 +32,9 @@ EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point
   return one;
 }
 
-bool IsAnsweredByClosedForm(const EnsembleSpec& spec) {
-  return spec.model == Model::kClosedForm ||
-         (spec.model == Model::kAuto && !spec.verify && AimOf(spec).HasClosedForm());
-}
-
 bool NeedsNoSamples(const EnsembleSpec& spec) {
-  return spec.model == Model::kSpectrum || IsAnsweredByClosedForm(spec);
+  if (spec.model != Model::kAuto) return !TakesSamples(spec.model);
+  return !spec.verify && AimOf(spec).HasClosedForm();
 }
 
 Engine EngineFor(const EnsembleSpec& spec) {

@@ -70,7 +70,6 @@ PointParameters PointAt(const EnsembleSpec& spec, size_t index);
 // The same spec for one of its points, by `model`, with that point's share of a budget.
 EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point, Model model);
 
-bool IsAnsweredByClosedForm(const EnsembleSpec& spec);
 // True if the spec alone shows that no point needs samples. If false, AUTO may still choose the
 // spectrum, which needs none.
 bool NeedsNoSamples(const EnsembleSpec& spec);

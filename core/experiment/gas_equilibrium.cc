@@ -243,12 +243,12 @@ class GasEquilibrium : public GasExperiment {
     return TakesSamples(answer().model) && MeasuresConductivity(geometry());
   }
 
-  // The limit, which is beside measured estimates, is that of the infinite gas.
   // The mean of the moments with this index.
   Reading OfCurrent(size_t index) const {
     return MeanAt(index, events_, RoundingBy(answer().model));
   }
 
+  // The limit, which is beside measured estimates, is that of the infinite gas.
   void AddConductivity(std::vector<Measurement>& table) const {
     const auto [correction, error] = LimitCorrection(geometry());
     // `of_static`: the static conductivity, in the units of the estimate.

@@ -22,7 +22,7 @@
 
 namespace ballpiston {
 
-// Of the mean times between collisions, relative.
+// The relative error of the closed mean free times.
 constexpr double ErrorOfClosedForms(const PointParameters& /*point*/) {
   return kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
 }

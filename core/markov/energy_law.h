@@ -31,7 +31,7 @@
 namespace ballpiston {
 
 // For 61 bins. The largest errors are those of the first bin near epsilon = 1/2: up to 1.5e-4, from
-// the rates within the bin; elsewhere up to 3.5e-5.
+// the rates within the bin; those of other bins and energies are up to 3.5e-5.
 inline constexpr Discretisation kEnergyLawDiscretisation = {.degree = 20, .levels = 4};
 inline constexpr double kEnergyLawError = 2e-4;  // of a probability
 

@@ -149,10 +149,10 @@ std::vector<FieldViolation> AnswerViolations(const EnsembleSpec& spec) {
   for (size_t i = 0; i < PointCount(spec); ++i) {
     const Expected expected = ExpectedAt(spec, PointAt(spec, i));
     const auto& [point, model, scatter] = expected;
-    if (tolerance && model == Model::kClosedForm) {
-      least = std::max(least, AimOf(spec).numerical_error(point));
+    if (model == Model::kClosedForm) {
+      if (tolerance) least = std::max(least, AimOf(spec).numerical_error(point));
+      continue;
     }
-    if (model == Model::kClosedForm) continue;
     if (spec.model == Model::kAuto && IsABilliard(model) && !IsSoundForBilliard(spec, point)) {
       return BeyondTheDomain(spec);
     }

@@ -164,7 +164,11 @@ absl::StatusOr<StoredPoint> JobJournal::ReadPoint(size_t point) {
     if (!stored.state) stored.earlier = ReadEarlier(database, job_->row().job.continues(), index);
     return stored;
   });
-  if (absl::IsUnavailable(read.status())) store_.AwaitRetry();
+  if (absl::IsUnavailable(read.status())) {
+    LogError(absl::StrCat("point ", point, " of ", job_->row().job.name(),
+                          " cannot be read and is read again: ", read.status().message()));
+    store_.AwaitRetry();
+  }
   return read;
 }
 

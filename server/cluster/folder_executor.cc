@@ -156,9 +156,9 @@ void FolderExecutor::NoteTaken(const LeaseFileName& file) {
 
 // False if the file has to stay: it cannot be read or reported now.
 bool FolderExecutor::Report(const LeaseFileName& file) {
+  if (file.outcome && reported_.contains(file.lease)) return true;
   const auto found = leases_.find(file.lease);
   Laid* const laid = found == leases_.end() ? nullptr : &found->second;
-  if (earlier_.contains(file.lease)) return true;
   const size_t offset = laid == nullptr ? 0 : laid->reported;
   const std::string path =
       laid != nullptr && !file.outcome ? file.Taken() : file.Done(*file.outcome);
@@ -166,7 +166,7 @@ bool FolderExecutor::Report(const LeaseFileName& file) {
   if (absl::IsUnavailable(bytes.status()) || absl::IsNotFound(bytes.status())) return false;
   const absl::Status status = bytes.ok() ? ReportBytes(*bytes, laid) : bytes.status();
   if (absl::IsUnavailable(status)) return false;
-  if (laid == nullptr) earlier_.insert(file.lease);
+  if (file.outcome) reported_.insert(file.lease);
   if (!status.ok() && (file.outcome || !absl::IsOutOfRange(status))) {
     Refuse(absl::Status(status.code(), absl::StrCat(path, ": ", status.message())));
   }
@@ -217,7 +217,7 @@ absl::Status FolderExecutor::ReportChunks(const Lease& lease, absl::string_view&
 void FolderExecutor::End(const LeaseFileName& file) {
   const absl::Status removed = files_->Remove(file.Done(*file.outcome));
   if (!removed.ok() && !absl::IsNotFound(removed)) return;
-  earlier_.erase(file.lease);
+  reported_.erase(file.lease);
   const auto found = leases_.find(file.lease);
   if (found == leases_.end()) return;
   const Lease& lease = found->second.lease;
@@ -311,13 +311,13 @@ absl::Status FolderExecutor::LaySome() {
     capacity_.seconds = PaceOf(options_, leases_.size()).lease;
     std::optional<Lease> lease = scheduler_.Next(capacity_);
     if (!lease) break;
-    absl::Status laid = LayOne(*std::move(lease));
+    absl::Status laid = LayOne(*lease);
     if (!laid.ok()) return laid;
   }
   return absl::OkStatus();
 }
 
-absl::Status FolderExecutor::LayOne(Lease lease) {
+absl::Status FolderExecutor::LayOne(const Lease& lease) {
   absl::Cleanup give_back = [&] { scheduler_.Return(lease, false); };  // also after an exception
   const Pace pace = PaceOf(options_, leases_.size());
   const LeaseFileName file = {absl::StrCat(process_, "-", ++laid_)};

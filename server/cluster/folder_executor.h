@@ -124,7 +124,7 @@ class FolderExecutor {
   void GiveBack(Leases::iterator laid, bool tried);
   absl::Status Lay();
   absl::Status LaySome();
-  absl::Status LayOne(Lease lease);
+  absl::Status LayOne(const Lease& lease);
   void NoteOutcome(const absl::Status& outcome);
   void Refuse(const absl::Status& why);
 
@@ -137,8 +137,8 @@ class FolderExecutor {
 
   // Used only by the thread that looks.
   Leases leases_;
-  size_t taken_ = 0;               // of these
-  std::set<std::string> earlier_;  // leases of earlier processes that are reported, not removed yet
+  size_t taken_ = 0;                // of these
+  std::set<std::string> reported_;  // leases whose files in done/ are reported, but not removed yet
   uint64_t laid_ = 0;
   std::optional<Clock::time_point> prepared_;
   Clock::time_point next_look_ = {};

@@ -106,7 +106,7 @@ class Run {
   // The points that wait for this pilot are to be opened again.
   void PilotIsKnown(const PilotPlace& place);
 
-  // Whether the point is still to be opened, or is being opened.
+  // Whether the point is still to be opened, is being opened, or waits for a pilot.
   bool IsUnopened(size_t point) const;
 
   // Chunks of the lease that are still needed go out again, as this attempt.
@@ -127,7 +127,8 @@ class Run {
   // A copy of an unfinished point, if some of it is computed.
   std::optional<LivePoint> Unfinished(size_t index) const;
 
-  // The point is finished, or has a chunk more that this process has computed.
+  // The point is finished, or has a chunk more that this process has computed. It is not being
+  // opened any more.
   void NoteProgress(size_t point);
   // Whether the suspicion is to be cleared: the run has progressed, and has no pilot that the next
   // suspect may need.

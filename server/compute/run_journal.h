@@ -45,7 +45,8 @@ class RunJournal {
   virtual void Began() = 0;
 
   // What an earlier process stored of an unfinished point, or an earlier job of the same point. May
-  // be slow. UNAVAILABLE: try again now.
+  // wait. UNAVAILABLE: the disk could not be read; the call has waited, and can be repeated at
+  // once.
   virtual absl::StatusOr<StoredPoint> ReadPoint(size_t point) = 0;
 
   // The scheduler holds its lock during this call and the next three, so they must be quick, must

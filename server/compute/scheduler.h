@@ -66,7 +66,8 @@ class Scheduler {
   // There may be a new lease, or a turn at one. Call it after a report.
   void Wake() { woken_.NotifyAll(); }
 
-  // Opens one of the points that the lease asks to open. May take long.
+  // Opens one of the points that the lease asks to open. May take long; while the disk cannot be
+  // read, it tries again until the run is stopped.
   void Open(const Lease& lease, size_t point);
 
   // Chunks that nobody needs are dropped. An executor that is not local may also report chunks of

@@ -181,6 +181,8 @@ class Watch {
     auto finished = book_.FinishedAfter(record, active, told_finished_, kMaxPoints);
     if (!finished.ok()) return finished.status();
     for (FinishedPoint& point : *finished) {
+      // Numbers have no gaps. Points that are missing have expired.
+      if (point.number != told_finished_ + 1) return ResultsExpired(request_.name());
       *snapshot.add_finished_points() = std::move(point.result);
       told_finished_ = point.number;
     }

@@ -156,7 +156,7 @@ absl::Status Store::Flush() {
   const auto outcome = std::make_shared<std::optional<absl::Status>>();
   const auto done = [this, outcome](const absl::Status& status) {
     MutexLock lock(mutex_);
-    *outcome = status;
+    *outcome = failing_ ? absl::UnavailableError(failure_) : status;
   };
   Post({.kind = Kind::kRequest, .change = [](Database&) {}, .done = done}, true);
   MutexLock lock(mutex_);
@@ -164,7 +164,7 @@ absl::Status Store::Flush() {
     if (stalled()) return Stalled();
     written_.WaitUntil(mutex_, SteadyNow() + kBetweenLooks);
   }
-  return failing_ ? absl::UnavailableError(failure_) : **outcome;
+  return **outcome;
 }
 
 void Store::AwaitSwept() {

@@ -114,8 +114,7 @@ class Store {
   // Returns when few enough writes are pending, or the store is closing.
   void AwaitRoom();
 
-  // Returns after Options::retry, or when the store is closing. For a read that failed because of
-  // the disk.
+  // Waits for Options::retry, or until StopWaiting or Close. For a read that the disk failed.
   void AwaitRetry();
 
   // When this returns OK, all records posted before the call are on disk. Returns UNAVAILABLE if

@@ -53,12 +53,12 @@ bool Store::AwaitWork() {
   return !closing_ || !waiting_.empty();
 }
 
-// Drops each checkpoint whose point has a later waiting write, with no request between them: the
-// group may end at a request, and a flush promises all earlier records. A cluster reports many
-// chunks of a point at a time, each with a checkpoint; if all of them were written, the chunks of
-// first-hit that arrive in order would be accepted at a third of the rate (scheduler_benchmark).
-// And while the disk fails, waiting checkpoints would soon take all the room of AwaitRoom, and the
-// threads would stop computing.
+// Drops each checkpoint whose point has a later waiting write, with no request between them:
+// the later write may not fit into the request's group, and a flush promises all earlier records. A
+// cluster reports many chunks of a point at a time, each with a checkpoint; if all of them were
+// written, the chunks of first-hit that arrive in order would be accepted at a third of the rate
+// (scheduler_benchmark). And while the disk fails, waiting checkpoints would soon take all the room
+// of AwaitRoom, and the threads would stop computing.
 void Store::DropSuperseded() {
   const auto is_checkpoint = [](const Write& write) { return write.kind == Kind::kCheckpoint; };
   if (std::ranges::none_of(waiting_, is_checkpoint)) return;  // closed forms have none

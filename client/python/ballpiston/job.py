@@ -388,7 +388,7 @@ class Job:
 
 def _farewell(job: Job) -> str:
     words = 'client.job("{0}").{1}()'
-    if "BALLPISTON_PROGRESS" in os.environ:  # set by `ballpiston figure`: its user is in a shell
+    if os.environ.get("BALLPISTON_CONFIG") == "/dev/null":  # by `ballpiston figure`, in a shell
         words = "ballpiston {1} {0}{2}"
     server = "" if job._connection.private else f" --server {job._connection.address}"
     watch, cancel = (words.format(job.name, verb, server) for verb in ("watch", "cancel"))

@@ -28,7 +28,7 @@ _EXIT_CODES: list[tuple[type[BaseException], int]] = [
 def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str]) -> int:
     """Prints the paths of the files that `main` writes. Returns the exit code."""
     try:
-        # Before this line SIGTERM ends Python without a traceback, and SIGINT does not.
+        # Until here SIGTERM ends Python in silence, and SIGINT would print a traceback.
         signal.signal(signal.SIGTERM, signal.default_int_handler)
         for path in main(arguments):
             print(path)

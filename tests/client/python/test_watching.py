@@ -259,7 +259,7 @@ def test_an_error_ends_the_watch_and_the_message_says_how_to_watch_again(
     monkeypatch.setattr("ballpiston.job.watch_job", expired)
     with pytest.raises(ballpiston.Unauthenticated, match="expired\\nThe job goes on"):
         endless.watch()
-    monkeypatch.setenv("BALLPISTON_PROGRESS", "none")  # as in `ballpiston figure`
+    monkeypatch.setenv("BALLPISTON_CONFIG", "/dev/null")  # as in `ballpiston figure`
     with pytest.raises(ballpiston.Unauthenticated, match=f"ballpiston cancel {endless.name}$"):
         endless.watch()
     address = client.job(endless.name)._connection.address

@@ -83,8 +83,6 @@ TEST(GasEquilibrium, RatiosByWindowEndAtTheRatio) {
   }
 }
 
-// The conductivity is measured up to 5000 contacts. A question that names it for a larger gas is
-// rejected.
 // Without correlations the conductivity is exactly half of the exchange rate, which the jump
 // process has rounded.
 TEST(GasEquilibrium, TheConductivityOfOneColumnHasTheErrorOfTheRoundedRate) {
@@ -99,6 +97,8 @@ TEST(GasEquilibrium, TheConductivityOfOneColumnHasTheErrorOfTheRoundedRate) {
   }
 }
 
+// The conductivity is measured up to 5000 contacts. A question that names it for a larger gas is
+// rejected.
 TEST(GasEquilibrium, ConductivityIsMeasuredUpTo5000Contacts) {
   for (const auto& [columns, has] : {std::pair(2500, true), {2501, false}}) {
     EnsembleSpec spec = SpecAt(1, Model::kMarkov, {.columns = columns});

@@ -130,7 +130,7 @@ TEST_F(DiskFailure, OnAFullDiskAFlushFailsWhileARecordWaitsForFreedSpace) {
     if (store->failing() && !flush.joinable()) {  // the second attempt, alone
       store->Record([&](Database&) { has_flushed.wait(); });
       flush = std::thread([&] {
-        EXPECT_FALSE(store->Flush().ok());
+        EXPECT_THAT(store->Flush(), StatusIs(absl::StatusCode::kUnavailable, HasSubstr("full")));
         flushed.set_value();
       });
       AwaitThat([&] { return store->counts().pending_writes == 4; });  // with a step of the sweeper

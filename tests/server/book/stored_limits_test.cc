@@ -20,10 +20,12 @@ struct KeepingReader : WatchReader {
   int64_t watches() const override { return 1; }
   bool Write(const v1::WatchEnsembleJobResponse& message) override {
     messages.push_back(message);
+    if (messages.size() == 1 && after_first) after_first();
     return true;
   }
 
   std::vector<v1::WatchEnsembleJobResponse> messages;
+  std::function<void()> after_first;
 };
 
 class StoredLimitsTest : public BookTest {
@@ -49,11 +51,13 @@ class StoredLimitsTest : public BookTest {
 
   // Watches the job to its end. Returns the messages, or the error.
   absl::StatusOr<std::vector<v1::WatchEnsembleJobResponse>> Watched(
-      const std::string& id, const std::string& resume_token = "") {
+      const std::string& id, const std::string& resume_token = "",
+      std::function<void()> after_first = nullptr) {
     v1::WatchEnsembleJobRequest request;
     request.set_name(JobName(id));
     request.set_resume_token(resume_token);
     KeepingReader reader;
+    reader.after_first = std::move(after_first);
     const absl::Status status = RunWatch(*book_, WatchTiming(), "this process", request, reader);
     if (!status.ok()) return status;
     return reader.messages;
@@ -134,6 +138,20 @@ TEST_F(StoredLimitsTest, AWatchOfExpiredResultsHasNoPartOfThem) {
     EXPECT_TRUE(end.back().job().results_expired());
   }
   EXPECT_EQ(ReasonOf(Watched(id, whole[0].resume_token()).status()), "RESULTS_EXPIRED");
+}
+
+// The sweeper has removed some of the rows that the watch has not read yet.
+TEST_F(StoredLimitsTest, AWatchEndsWithAnErrorIfResultsExpireMeanwhile) {
+  Start();
+  const std::string id = Done(kAnn, 1, 200);
+  const auto expire = [&] {
+    ASSERT_OK(store_->Commit([&](Database& database) {
+      const int64_t job = FindJob(database, id, Grid::kLeftOut)->sequence;
+      ExpireJob(database, job);
+      database.Run("DELETE FROM results WHERE job = ? AND finish <= 150", job);
+    }));
+  };
+  EXPECT_EQ(ReasonOf(Watched(id, "", expire).status()), "RESULTS_EXPIRED");
 }
 
 // The oldest results expire first. Then expired jobs are deleted. If pinned jobs still take too

@@ -287,10 +287,10 @@ TEST_F(FolderExecutorTest, ALeaseThatCannotBeMovedLeavesNoFile) {
   EXPECT_THAT(files_.files, IsEmpty());
 }
 
-TEST_F(FolderExecutorTest, ALeaseGoesBackIfItsFileRunsOutOfMemory) {
-  bool has_memory = false;
+TEST_F(FolderExecutorTest, ALeaseGoesBackIfMemoryRunsOutWhileItIsLaid) {
+  bool has_failed = false;
   files_.before = [&](const std::string& operation, const std::string&) {
-    if (operation == "create" && !std::exchange(has_memory, true)) throw std::bad_alloc();
+    if (operation == "create" && !std::exchange(has_failed, true)) throw std::bad_alloc();
     return absl::OkStatus();
   };
   const auto journal = Begin();

@@ -68,7 +68,7 @@ class RecordingJournal : public RunJournal {
   }
 
   std::map<size_t, FoldState> stored;  // set before the run: what an earlier process stored
-  int unreadable = 0;                  // so many reads of a point fail
+  int unreadable = 0;                  // the first reads of points that fail
   std::mutex mutex;
   std::condition_variable changed;
   int ends = 0;

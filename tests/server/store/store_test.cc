@@ -288,6 +288,13 @@ TEST_F(StoreTest, AReadThatThrowsEndsItsTransaction) {
   EXPECT_OK(store->Read(count));
 }
 
+TEST_F(StoreTest, ARetryIsAwaited) {
+  const auto store = Open({.retry = std::chrono::milliseconds(20)});
+  const auto start = std::chrono::steady_clock::now();
+  store->AwaitRetry();
+  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(20));
+}
+
 TEST_F(StoreTest, AShutdownWaitsForNoRetry) {
   const auto store = Open({.retry = kUnreachedLimit});
   store->StopWaiting();
