@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 #include <thread>
 
@@ -10,7 +12,7 @@
 namespace ballpiston::server {
 namespace {
 
-// A plan uses at most this many points, evenly spread over the grid.
+// A plan uses at most this many points of the grid.
 constexpr size_t kMostPoints = 1000;
 
 // Seconds of the store's thread to store one of many results of points without samples, while other
@@ -37,6 +39,14 @@ struct PlannedWork {
   }
 };
 
+// The index of point i of `planned`, each in one of as many equal parts of the grid. Its place in
+// its part follows the golden ratio, so that no list of the grid is seen at one of its values only.
+size_t IndexOf(size_t i, size_t planned, size_t points) {
+  const auto part = static_cast<double>(i);
+  const double place = part + std::fmod(part * (std::numbers::phi - 1), 1.0);
+  return static_cast<size_t>(place * static_cast<double>(points) / static_cast<double>(planned));
+}
+
 double SecondsToStore(const Ladder& ladder) {
   return ladder.answer.model == Model::kSpectrum ? kSecondsToStoreSpectrum
                                                  : kSecondsToStoreClosedForm;
@@ -57,7 +67,7 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
   std::set<PilotPlace> pilots;
   for (size_t i = 0; i < planned; ++i) {
     if (call.is_abandoned()) return absl::CancelledError("the client is gone");
-    const PointParameters point = PointAt(checked.spec, i * points / planned);
+    const PointParameters point = PointAt(checked.spec, IndexOf(i, planned, points));
     const Ladder ladder = service.ladder.LadderOf(checked.spec, point, pilots);
     if (ladder.pilot) pilots.insert(*ladder.pilot);
     work.pilots += ladder.work_of_pilot;
@@ -71,6 +81,7 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
   const double share = static_cast<double>(points) / static_cast<double>(planned);
   work.points *= share;
   work.stored *= share;
+  if (2 * pilots.size() > planned) work.pilots *= share;  // nearly every point has one of its own
   work.points += kSecondsOfAFirstPoint;
   response.set_point_count(static_cast<int32_t>(points));
   response.set_work(work.Computed());

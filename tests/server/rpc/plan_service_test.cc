@@ -112,7 +112,7 @@ TEST_F(PlanServiceTest, MemoryIsThatOfTheLargestGas) {
   EXPECT_LT(plan.memory(), 1e9);
 }
 
-TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandPointsEvenlySpread) {
+TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandOfItsPoints) {
   v1::EnsembleSpec spec = QuestionOf(kEnergyRelaxation);
   // The billiard needs no pilots; the number of pilots is not the number of points.
   spec.set_model(v1::EnsembleSpec::BILLIARD);
@@ -123,9 +123,38 @@ TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandPointsEvenlySpread) {
   EXPECT_EQ(plan.point_count(), 100'000);
   ASSERT_EQ(plan.points_size(), 1000);
   for (int i = 0; i < 1000; ++i) {
-    EXPECT_EQ(plan.points(i).parameters().delta(), spec.grid().delta(100 * i));
+    EXPECT_GE(plan.points(i).parameters().delta(), spec.grid().delta(100 * i));
+    EXPECT_LE(plan.points(i).parameters().delta(), spec.grid().delta(100 * i + 99));
   }
   EXPECT_NEAR((plan.work() - FirstPoint()) / (100 * WorkOfPoints(plan)), 1, 1e-9);
+}
+
+// Every second point takes 150 times as long.
+TEST_F(PlanServiceTest, TheOrderOfAListDoesNotMatter) {
+  std::vector<double> works;
+  for (const auto& deltas : {std::vector{0.1, 0.008}, {0.008, 0.1}}) {
+    v1::EnsembleSpec spec = QuestionOf(kEquilibrium);
+    spec.set_model(v1::EnsembleSpec::BILLIARD);
+    spec.mutable_grid()->clear_rho();
+    for (int i = 0; i < 1000; ++i) spec.mutable_grid()->add_rho(0.51 + 9e-5 * i);
+    spec.mutable_grid()->mutable_delta()->Assign(deltas.begin(), deltas.end());
+    works.push_back(PlanOf(spec).work());
+  }
+  EXPECT_NEAR(works[0] / works[1], 1, 0.05);
+}
+
+TEST_F(PlanServiceTest, ALargeGridHasItsPilots) {
+  v1::EnsembleSpec spec = QuestionOf(kEnergyRelaxation);
+  spec.mutable_target()->set_tolerance(0.02);
+  spec.mutable_grid()->clear_rho();
+  const auto work_of = [&](int points) {
+    while (spec.grid().rho_size() < points) {
+      spec.mutable_grid()->add_rho(0.51 + 3.6e-5 * spec.grid().rho_size());
+    }
+    return PlanOf(spec).work();
+  };
+  const double of_few = work_of(1000);
+  EXPECT_NEAR(work_of(5000) / of_few, 5, 1);
 }
 
 }  // namespace
