@@ -146,11 +146,10 @@ TEST_F(PlanServiceTest, TheOrderOfAListDoesNotMatter) {
 TEST_F(PlanServiceTest, ALargeGridHasItsPilots) {
   v1::EnsembleSpec spec = QuestionOf(kEnergyRelaxation);
   spec.mutable_target()->set_tolerance(0.02);
-  spec.mutable_grid()->clear_rho();
+  spec.mutable_grid()->set_delta(0, 0.002);
   const auto work_of = [&](int points) {
-    while (spec.grid().rho_size() < points) {
-      spec.mutable_grid()->add_rho(0.51 + 3.6e-5 * spec.grid().rho_size());
-    }
+    spec.mutable_grid()->clear_rho();
+    for (int i = 0; i < points; ++i) spec.mutable_grid()->add_rho(0.51 + 0.18 * i / points);
     return PlanOf(spec).work();
   };
   const double of_few = work_of(1000);
