@@ -295,6 +295,31 @@ describe('Jobs', () => {
     await jobLink(job).waitFor();
   });
 
+  it('that came or ended since the last refresh of a long list are not lost', async () => {
+    const jobs = Array.from({length: 150}, (_, i) => fakeJob(150 - i));
+    jobs[120].state = 'RUNNING';
+    await listInstead(page, jobs);
+    await answerInstead(page, 'EnsembleService/GetEnsembleJob', jobs[120]);
+    await open();
+    const rows = page.locator('.jobs tbody tr');
+    const more = page.getByRole('button', {name: 'More jobs'});
+    await more.click();
+    await page.locator('[data-state=RUNNING]').waitFor();
+    jobs[120] = {...jobs[120], state: 'CANCELLED'};
+    await answerInstead(page, 'EnsembleService/GetEnsembleJob', jobs[120]);
+    await page.locator('[data-state=CANCELLED]').waitFor();
+    assert.equal(await rows.count(), 150);
+    jobs.unshift(...Array.from({length: 130}, (_, i) => fakeJob(280 - i)));
+    await jobLink(jobs[0].name).waitFor();
+    for (let shown = 100; shown < 280; shown = await rows.count()) {
+      assert.equal(await rows.count(), shown);
+      await more.click();
+      await assertSoon(async () => assert.ok((await rows.count()) > shown));
+    }
+    await more.waitFor({state: 'hidden'});
+    assert.equal(await rows.count(), 280);
+  });
+
   it('that do not exist are reported', async () => {
     await open('ensembleJobs/nothing');
     await banner().filter({hasText: 'no such job'}).waitFor();
