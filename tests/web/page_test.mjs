@@ -235,6 +235,7 @@ describe('Jobs', () => {
       cancel(job);
     }
     await page.getByText('The job was cancelled').waitFor();
+    await page.getByRole('heading', {name: /^Point \d, unfinished: not kept$/}).waitFor();
   });
 
   it('show histograms with the exact law', async () => {
