@@ -374,6 +374,17 @@ describe('Jobs', () => {
     });
   }
 
+  it('that the server refuses for now are submitted again, and its reason is shown', async () => {
+    await open(firstHit);
+    await page.route('**/ballpiston.v1.EnsembleService/CreateEnsembleJob', (route) =>
+      route.fulfill({status: 429, json: {code: 'resource_exhausted', message: 'too many jobs'}}),
+    );
+    await page.getByRole('button', {name: 'Submit again'}).click();
+    await banner().filter({hasText: 'Retrying. The server says: too many jobs'}).waitFor();
+    await page.unroute('**/ballpiston.v1.EnsembleService/CreateEnsembleJob');
+    await page.getByText('Answered from the store').waitFor();
+  });
+
   it('with expired results show the command that computes them again', async () => {
     await answerInstead(
       page,
