@@ -270,7 +270,7 @@
         : null;
       this.convergenceNote.hidden = convergence !== null || !(point.samples > 0);
       this.convergenceNote.textContent = isFinished
-        ? 'This point finished too early for a chart of its convergence.'
+        ? 'Convergence is recorded while the page is open.'
         : '';
       this.view.show(point, convergence ? [convergence] : []);
     }
