@@ -488,6 +488,13 @@ describe('Keyboard, colours and width', () => {
     await page.getByLabel('δ').fill('0.15');
     await page.getByRole('button', {name: 'Trace'}).click();
     await page.getByRole('img', {name: 'Gas of 6 balls and 12 pistons'}).waitFor();
+    await page.getByRole('spinbutton', {name: 'Events'}).fill('1e3');
+    const request = page.waitForRequest(/TraceOrbit/);
+    await page.getByRole('button', {name: 'Trace'}).click();
+    assert.match((await request).postData(), /"events":1000\b/);
+    await page.getByLabel('Seed').fill('1e3');
+    assert.equal(await page.locator('form.fields').evaluate((form) => form.checkValidity()), false);
+    await page.getByLabel('Seed').fill('7');
     await page.getByLabel('δ').fill('0.9');
     await page.getByRole('button', {name: 'Trace'}).click();
     await banner().filter({hasText: 'delta is 0.9'}).waitFor();
