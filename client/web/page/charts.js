@@ -26,8 +26,17 @@
   const charts = new Set();
 
   const pixels = () => devicePixelRatio || 1;
-  const styleOf = (name) =>
-    getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const colours = new Map(); // those of style.css that were asked for, in the shown theme
+
+  // Only a property that is a colour resolves light-dark().
+  function styleOf(name) {
+    if (!colours.has(name)) {
+      const root = document.documentElement;
+      root.style.columnRuleColor = `var(${name})`;
+      colours.set(name, getComputedStyle(root).columnRuleColor);
+    }
+    return colours.get(name);
+  }
   const colourOf = (line) => styleOf(`--line-${line.colour % COLOURS}`);
 
   // Symbols distinguish lines for readers who cannot distinguish the colours.
@@ -403,7 +412,10 @@
   }
 
   // Called after a change of the theme.
-  const repaintCharts = () => charts.forEach((chart) => chart.repaint());
+  function repaintCharts() {
+    colours.clear();
+    charts.forEach((chart) => chart.repaint());
+  }
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaintCharts);
 
   // Called when the reader leaves a view.
