@@ -235,6 +235,7 @@ describe('Jobs', () => {
       cancel(job);
     }
     await page.getByText('The job was cancelled').waitFor();
+    await page.getByRole('heading', {name: /^Point \d, unfinished: not kept$/}).waitFor();
   });
 
   it('show histograms with the exact law', async () => {
@@ -295,6 +296,31 @@ describe('Jobs', () => {
     await jobLink(job).waitFor();
   });
 
+  it('that came or ended since the last refresh of a long list are not lost', async () => {
+    const jobs = Array.from({length: 150}, (_, i) => fakeJob(150 - i));
+    jobs[120].state = 'RUNNING';
+    await listInstead(page, jobs);
+    await answerInstead(page, 'EnsembleService/GetEnsembleJob', jobs[120]);
+    await open();
+    const rows = page.locator('.jobs tbody tr');
+    const more = page.getByRole('button', {name: 'More jobs'});
+    await more.click();
+    await page.locator('[data-state=RUNNING]').waitFor();
+    jobs[120] = {...jobs[120], state: 'CANCELLED'};
+    await answerInstead(page, 'EnsembleService/GetEnsembleJob', jobs[120]);
+    await page.locator('[data-state=CANCELLED]').waitFor();
+    assert.equal(await rows.count(), 150);
+    jobs.unshift(...Array.from({length: 130}, (_, i) => fakeJob(280 - i)));
+    await jobLink(jobs[0].name).waitFor();
+    for (let shown = 100; shown < 280; shown = await rows.count()) {
+      assert.equal(await rows.count(), shown);
+      await more.click();
+      await assertSoon(async () => assert.ok((await rows.count()) > shown));
+    }
+    await more.waitFor({state: 'hidden'});
+    assert.equal(await rows.count(), 280);
+  });
+
   it('that do not exist are reported', async () => {
     await open('ensembleJobs/nothing');
     await banner().filter({hasText: 'no such job'}).waitFor();
@@ -347,6 +373,17 @@ describe('Jobs', () => {
       assert.ok(await banner().isVisible());
     });
   }
+
+  it('that the server refuses for now are submitted again, and its reason is shown', async () => {
+    await open(firstHit);
+    await page.route('**/ballpiston.v1.EnsembleService/CreateEnsembleJob', (route) =>
+      route.fulfill({status: 429, json: {code: 'resource_exhausted', message: 'too many jobs'}}),
+    );
+    await page.getByRole('button', {name: 'Submit again'}).click();
+    await banner().filter({hasText: 'Retrying. The server says: too many jobs'}).waitFor();
+    await page.unroute('**/ballpiston.v1.EnsembleService/CreateEnsembleJob');
+    await page.getByText('Answered from the store').waitFor();
+  });
 
   it('with expired results show the command that computes them again', async () => {
     await answerInstead(
@@ -451,6 +488,13 @@ describe('Keyboard, colours and width', () => {
     await page.getByLabel('δ').fill('0.15');
     await page.getByRole('button', {name: 'Trace'}).click();
     await page.getByRole('img', {name: 'Gas of 6 balls and 12 pistons'}).waitFor();
+    await page.getByRole('spinbutton', {name: 'Events'}).fill('1e3');
+    const request = page.waitForRequest(/TraceOrbit/);
+    await page.getByRole('button', {name: 'Trace'}).click();
+    assert.match((await request).postData(), /"events":1000\b/);
+    await page.getByLabel('Seed').fill('1e3');
+    assert.equal(await page.locator('form.fields').evaluate((form) => form.checkValidity()), false);
+    await page.getByLabel('Seed').fill('7');
     await page.getByLabel('δ').fill('0.9');
     await page.getByRole('button', {name: 'Trace'}).click();
     await banner().filter({hasText: 'delta is 0.9'}).waitFor();
@@ -571,7 +615,7 @@ describe('Many', () => {
     await page.getByText('10,000 are shown').waitFor();
     await page.getByText('6 of 100 lines, evenly selected').waitFor();
     assert.equal(await page.locator('.points tbody tr').count(), 200);
-    await page.getByRole('button', {name: 'More points'}).click();
+    await page.getByRole('button', {name: 'More points'}).press('Enter');
     await page.getByText('(400 of 10,000 are shown)').waitFor();
   });
 });

@@ -2,13 +2,14 @@
 // line with the values under the pointer, and a table of its numbers.
 //
 // A chart is given by
-//   {title, xLabel, yLabel, logX, fromZero, top, note, lines}; y above `top` is cut off
+//   {title, xLabel, yLabel, logX, logY, fromZero, top, note, lines}; y above `top` is cut off
 // and a line by
 //   {label, kind, colour, x, y, error, shift, stepped}
 //   kind    'measured' (symbols with error bars), 'exact' (a line), 'limit' (a dashed line), or
 //           'steps' (filled from 0; y[i] holds from x[i] to x[i + 1])
 //   colour  0, 1, ...: index of colour and symbol
 //   error   the standard error of each y; all or some may be missing
+//   marks   true for an exact line or a limit that is a mark at each x, with nothing between
 //   stepped true for a line where y[i] holds from x[i] to x[i + 1]
 //   shift   moves symbols and error bars along x, to the middle of steps
 (function (ballpiston) {
@@ -25,8 +26,17 @@
   const charts = new Set();
 
   const pixels = () => devicePixelRatio || 1;
-  const styleOf = (name) =>
-    getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const colours = new Map(); // those of style.css that were asked for, in the shown theme
+
+  // Only a property that is a colour resolves light-dark().
+  function styleOf(name) {
+    if (!colours.has(name)) {
+      const root = document.documentElement;
+      root.style.columnRuleColor = `var(${name})`;
+      colours.set(name, getComputedStyle(root).columnRuleColor);
+    }
+    return colours.get(name);
+  }
   const colourOf = (line) => styleOf(`--line-${line.colour % COLOURS}`);
 
   // Symbols distinguish lines for readers who cannot distinguish the colours.
@@ -53,23 +63,32 @@
     c.fill();
   }
 
-  function drawErrorBar(u, c, x, value, error) {
+  function drawBar(c, ...ends) {
     c.beginPath();
-    c.moveTo(x, u.valToPos(value - error, 'y', true));
-    c.lineTo(x, u.valToPos(value + error, 'y', true));
+    for (const end of ends) c.lineTo(...end);
     c.stroke();
+  }
+
+  // A logarithmic axis has no place for an end at or below 0.
+  function drawErrorBar(u, c, x, value, error) {
+    const y = (end) => u.valToPos(Math.max(end, u.scales.y.min), 'y', true);
+    drawBar(c, [x, y(value - error)], [x, y(value + error)]);
   }
 
   function drawMeasured(u, line) {
     const c = u.ctx;
     c.fillStyle = c.strokeStyle = colourOf(line);
     c.lineWidth = 1.5 * pixels();
+    c.setLineDash(line.kind === 'limit' ? [6 * pixels(), 3 * pixels()] : []);
+    const radius = SYMBOL_RADIUS * pixels();
     for (let i = 0; i < line.x.length; ++i) {
       const x = line.x[i] + (line.shift ?? 0);
       if (!isNumber(line.y[i]) || x < u.scales.x.min || x > u.scales.x.max) continue;
       const left = u.valToPos(x, 'x', true);
       if (line.error?.[i] > 0) drawErrorBar(u, c, left, line.y[i], line.error[i]);
-      drawSymbol(c, line, left, u.valToPos(line.y[i], 'y', true), SYMBOL_RADIUS * pixels());
+      const y = u.valToPos(line.y[i], 'y', true);
+      if (line.marks) drawBar(c, [left - 3 * radius, y], [left + 3 * radius, y]);
+      else drawSymbol(c, line, left, y, radius);
     }
   }
 
@@ -79,7 +98,7 @@
     c.beginPath();
     c.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
     c.clip();
-    for (const line of lines) if (line.kind === 'measured') drawMeasured(u, line);
+    for (const line of lines) if (line.kind === 'measured' || line.marks) drawMeasured(u, line);
     c.restore();
   }
 
@@ -88,7 +107,7 @@
     let min = Infinity,
       max = -Infinity;
     const see = (y) => {
-      if (!isNumber(y)) return;
+      if (!isNumber(y) || (chart.logY && y <= 0)) return;
       min = Math.min(min, y);
       max = Math.max(max, y);
     };
@@ -101,6 +120,8 @@
       }
     }
     if (min > max) return [0, 1];
+    const factor = (max / min) ** ROOM;
+    if (chart.logY) return [min / factor, max * factor];
     return withRoom(min, Math.min(max, chart.top ?? max), chart.fromZero);
   }
 
@@ -119,13 +140,14 @@
   function uplotSeries(line) {
     const stepped = uPlot.paths.stepped({align: 1});
     const forms = {
-      measured: {paths: () => null}, // drawAllMeasured draws them
+      measured: {paths: () => null}, // drawAllMeasured draws it
       steps: {width: 1, fill: () => styleOf('--fill'), paths: stepped},
       exact: line.stepped ? {width: 2, paths: stepped} : {width: 1.5},
       limit: {width: 1.5, dash: [6, 5]},
     };
     const common = {label: line.label, points: {show: false}, spanGaps: true};
-    return {...common, stroke: () => colourOf(line), ...forms[line.kind]};
+    const form = line.marks ? forms.measured : forms[line.kind];
+    return {...common, stroke: () => colourOf(line), ...form};
   }
 
   function axis(label, more) {
@@ -148,9 +170,10 @@
   }
 
   function tickText(tick) {
+    tick = Number(tick.toPrecision(10));
     const size = Math.abs(tick);
     if (size >= 1e5 || (size > 0 && size < 1e-4)) return tick.toExponential().replace('e+', 'e');
-    return String(Number(tick.toPrecision(10)));
+    return String(tick);
   }
 
   // Ticks of a log axis: 1, 2 and 5 of each decade, or only 1 if there are many decades.
@@ -162,6 +185,8 @@
     }
     return ticks.filter((tick) => tick >= min && tick <= max);
   }
+
+  const LOG = {splits: logTicks, filter: (u, ticks) => ticks}; // of an axis
 
   function widthOfTicks(u, texts) {
     const longest = Math.max(1, ...(texts ?? []).map((text) => text.length));
@@ -179,6 +204,7 @@
       chart.xLabel,
       chart.yLabel,
       chart.logX,
+      chart.logY,
       chart.lines.map((line) => [line.label, line.kind, line.colour]),
     ]);
 
@@ -309,16 +335,16 @@
               distr: chart.logX ? 3 : 1,
               range: (u, min, max) => (this.xRange = rangeOfX(this.chart, min, max)),
             },
-            y: {range: () => rangeOfY(this.chart, this.xRange)},
+            y: {distr: chart.logY ? 3 : 1, range: () => rangeOfY(this.chart, this.xRange)},
           },
           axes: [
             axis(chart.xLabel, {
               values: tickTexts,
               size: 28,
               space: narrow ? 55 : 70,
-              ...(chart.logX ? {splits: logTicks, filter: (u, ticks) => ticks} : {}),
+              ...(chart.logX && LOG),
             }),
-            axis(chart.yLabel, {values: tickTexts, size: widthOfTicks}),
+            axis(chart.yLabel, {values: tickTexts, size: widthOfTicks, ...(chart.logY && LOG)}),
           ],
           series: [{}, ...chart.lines.map(uplotSeries)],
           hooks: {
@@ -386,7 +412,10 @@
   }
 
   // Called after a change of the theme.
-  const repaintCharts = () => charts.forEach((chart) => chart.repaint());
+  function repaintCharts() {
+    colours.clear();
+    charts.forEach((chart) => chart.repaint());
+  }
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaintCharts);
 
   // Called when the reader leaves a view.

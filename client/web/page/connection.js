@@ -59,7 +59,11 @@
   const failed = (error) => say(`${adviceFor(error)}The server says: ${error.message}`, true);
   function failedForNow(error) {
     if (isFinal) return;
-    say(`No answer; retrying. The page may be out of date. Reason: ${error.message}`);
+    say(
+      error.code === 'resource_exhausted'
+        ? `Retrying. The server says: ${error.message}`
+        : `No answer; retrying. The page may be out of date. Reason: ${error.message}`,
+    );
   }
 
   // Waits for the next event of this name, or until the signal is aborted.

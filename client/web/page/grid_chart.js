@@ -1,12 +1,12 @@
 // A chart of one estimate of all points against a parameter of the grid, with the exact values as
-// lines. The reader chooses the estimate, the parameter, and values, ratios or z.
+// marks. The reader chooses the estimate, the parameter, and values, ratios or z.
 (function (ballpiston) {
   'use strict';
 
   const {element, choice, isNumber, words, symbolOf, parameterPairs} = ballpiston;
 
   const MOST_LINES = 6; // the number of different colours and symbols
-  const MOST_WITHOUT_LOG = 30; // ratio of the largest to the smallest x
+  const MOST_WITHOUT_LOG = 30; // ratio of the largest to the smallest number
 
   const SHOWN = [
     {value: 'value', label: 'value'},
@@ -91,10 +91,11 @@
       .sort((a, b) => a.x - b.x);
   }
 
-  function isWide(x) {
-    const least = x.reduce((a, b) => Math.min(a, b), Infinity);
-    const most = x.reduce((a, b) => Math.max(a, b), 0);
-    return x.length > 2 && least > 0 && most / least > MOST_WITHOUT_LOG;
+  function isWide(numbers) {
+    const different = [...new Set(numbers.filter(isNumber))];
+    const least = different.reduce((a, b) => Math.min(a, b), Infinity);
+    const most = different.reduce((a, b) => Math.max(a, b), 0);
+    return different.length > 2 && least > 0 && most / least > MOST_WITHOUT_LOG;
   }
 
   class GridChart {
@@ -152,6 +153,7 @@
       const lines = drawn.flatMap(([label, points], i) =>
         ballpiston.seriesLines(placesOf(points, axis, estimate, shown), label, i),
       );
+      for (const line of lines) line.marks = shown === 'value' && line.kind !== 'measured';
       const hasValues = lines.some((line) => line.y.length);
       this.chart.show({
         title: `${words(estimate)} against ${symbolOf(axis)}`,
@@ -159,6 +161,7 @@
         yLabel: SHOWN.find((form) => form.value === shown).label,
         lines,
         logX: isWide(lines.flatMap((line) => line.x)),
+        logY: isWide(lines.flatMap((line) => line.y)),
         note: !hasValues
           ? 'No exact value is known.'
           : drawn.length < grouped.size

@@ -8,6 +8,7 @@
   const PAGE = 100;
   const REFRESH = 2000; // ms
   const MOST_CALLS = 20; // for one page: with a filter a call may return no job, but more follow
+  const MOST_ASKED = 20; // jobs outside the first page that one refresh requests
 
   const STATES = {
     QUEUED: 'waits',
@@ -97,12 +98,22 @@
 
   // The rows of jobs, by the job's name, newest job first.
   class JobRows extends LiveRows {
+    active = new Set(); // names of jobs that may change, the last updated one last
+
     clear() {
       this.rows.clear();
+      this.active.clear();
       this.body.replaceChildren();
     }
 
+    remove(name) {
+      super.remove(name);
+      this.active.delete(name);
+    }
+
     putJob(job, next) {
+      this.active.delete(job.name);
+      if (FILTERS.active.includes(job.state)) this.active.add(job.name);
       return this.put(job.name, JSON.stringify(job), () => cellsOf(job), next);
     }
 
@@ -206,14 +217,34 @@
       return {jobs, token};
     }
 
-    // Keeps the first answer's token of the next page: later jobs do not change it.
+    // Keeps the first answer's token of the next page: later jobs do not change it. But if no job
+    // of the page is known, jobs may be missing between it and the rows: the list begins again.
     async refresh() {
       const filter = this.filter;
       const {jobs, token} = await this.page('');
       if (filter !== this.filter) return;
+      if (!jobs.some((job) => this.rows.rows.has(job.name))) {
+        this.rows.clear();
+        this.token = null;
+      }
+      const names = new Set(jobs.map((job) => job.name));
+      const others = [...this.rows.active].filter((name) => !names.has(name));
       this.rows.refresh(jobs, token === '');
       this.token ??= token;
       this.show();
+      await Promise.all(others.slice(0, MOST_ASKED).map((name) => this.refreshJob(name)));
+    }
+
+    async refreshJob(name) {
+      const asked = call('EnsembleService/GetEnsembleJob', {name}, this.signal);
+      const job = await asked.catch((error) => {
+        if (error.code !== 'not_found') throw error;
+      });
+      if (!this.rows.rows.has(name)) return;
+      const states = FILTERS[this.filter];
+      const isListed = job && (states.length === 0 || states.includes(job.state));
+      if (isListed) this.rows.putJob(job, null);
+      else this.rows.remove(name);
     }
 
     async appendPage() {

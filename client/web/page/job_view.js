@@ -89,6 +89,11 @@
       this.newest = points[0]?.index ?? finished.at(-1)?.index ?? this.newest;
     }
 
+    stateOf(point) {
+      if (this.finished.has(point.index)) return '';
+      return ENDED.has(this.job.state) ? ', unfinished: not kept' : ', running';
+    }
+
     sorted() {
       return [...this.points.values()].sort((a, b) => a.index - b.index);
     }
@@ -203,20 +208,20 @@
       this.rows = new ballpiston.LiveRows(this.table, POINT_COLUMNS);
       const showMore = () => {
         this.count += ROWS;
-        this.show(this.points, this.finished, this.shown);
+        this.show(this.points, this.record, this.shown);
       };
       this.more = button('More points', showMore, {hidden: true});
       this.element = element('div', {}, this.table, this.more);
     }
 
     // Shows rows for the first `count` points.
-    show(points, finished, shown) {
-      Object.assign(this, {points, finished, shown});
+    show(points, record, shown) {
+      Object.assign(this, {points, record, shown});
       let next = this.rows.body.firstChild;
       for (const point of points.slice(0, this.count)) {
-        const isFinished = finished.has(point.index);
-        const seen = `${point.samples} ${isFinished}`;
-        const cells = () => this.cells(point, isFinished);
+        const state = record.stateOf(point);
+        const cells = () => this.cells(point, state);
+        const seen = `${point.samples}${state}`;
         next = this.rows.put(point.index, seen, cells, next).nextSibling;
       }
       this.more.hidden = points.length <= this.count;
@@ -225,10 +230,10 @@
       this.mark(shown);
     }
 
-    cells(point, isFinished) {
+    cells(point, state) {
       const choose = () => this.onChoose(point.index);
       const link = button(`Point ${point.index}`, choose, {class: 'link'});
-      const name = element('span', {}, link, isFinished ? '' : ' (running)');
+      const name = element('span', {}, link, state);
       return ballpiston.pointCells(point, name);
     }
 
@@ -258,15 +263,14 @@
     show(point, record, isFollowing) {
       this.element.hidden = false;
       const isFinished = record.finished.has(point.index);
-      const active = !ENDED.has(record.job?.state);
-      this.title.textContent = `Point ${point.index}${isFinished ? '' : ', running'}`;
-      this.follow.hidden = isFollowing || !active;
+      this.title.textContent = `Point ${point.index}${record.stateOf(point)}`;
+      this.follow.hidden = isFollowing || ENDED.has(record.job?.state);
       const convergence = point.estimates?.length
         ? record.convergence.get(point.index)?.chart(point.estimates[0].name)
         : null;
       this.convergenceNote.hidden = convergence !== null || !(point.samples > 0);
       this.convergenceNote.textContent = isFinished
-        ? 'This point finished too early for a chart of its convergence.'
+        ? 'Convergence is recorded while the page is open.'
         : '';
       this.view.show(point, convergence ? [convergence] : []);
     }
@@ -326,7 +330,7 @@
       this.gridSection.hidden = points.length < 2;
       if (points.length > 1) {
         this.grid.show(points);
-        this.points.show(points, record.finished, this.shown);
+        this.points.show(points, record, this.shown);
       }
       const point = record.points.get(this.shown);
       if (!point) return;

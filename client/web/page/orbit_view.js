@@ -17,11 +17,11 @@
     {name: 'delta', label: 'δ, reach of the piston', value: '0.2', step: 'any'},
     {name: 'cells', label: 'Cells, N or NxM; empty: a pair', value: '', text: true},
     {name: 'temperature', label: 'Temperature of a gas', value: '1', step: 'any'},
-    {name: 'seed', label: 'Seed', value: '0', step: '1'},
-    {name: 'events', label: 'Events', value: '10000', step: '1'},
+    {name: 'seed', label: 'Seed', value: '0', text: true, pattern: '[0-9]*'},
+    {name: 'events', label: 'Events', value: '10000', step: '1', min: 1, max: 1000000},
   ];
 
-  function fieldElement({name, label, value, step, text}) {
+  function fieldElement({name, label, value, text, ...more}) {
     return element(
       'label',
       {class: 'field'},
@@ -30,7 +30,7 @@
         name,
         value,
         type: text ? 'text' : 'number',
-        step: text ? null : step,
+        ...more,
         required: name === 'rho' || name === 'delta' || name === 'events',
         autocomplete: 'off',
       }),
@@ -44,7 +44,7 @@
       delta: Number(given.delta),
       cells: given.cells.trim(),
       seed: given.seed || '0',
-      events: given.events,
+      events: Number(given.events),
     };
     if (request.cells !== '') request.temperature = Number(given.temperature || 1);
     return request;

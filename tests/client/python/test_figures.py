@@ -288,6 +288,15 @@ def test_curves_of_one_name_are_chosen_from_a_result() -> None:
     assert tables.curves(result, "charge_cumulant_2_by_window")["time"].tolist() == [0, 1]
 
 
+def test_a_point_without_a_known_error_is_hollow() -> None:
+    axes = style.picture(300, 200).subplots()
+    style.error_points(axes, [1, 2, 3], [4, 5, 6], [0.1, np.nan, 0.2], style.BLUE)
+    full, hollow = (line for line in axes.lines if line.get_marker() == "o")
+    assert full.get_xdata().tolist() == [1, 2, 3]
+    assert (hollow.get_xdata().tolist(), hollow.get_markerfacecolor()) == ([2], "white")
+    assert hollow.get_zorder() >= full.get_zorder()  # later, so above it
+
+
 def test_the_same_picture_gives_the_same_file(tmp_path: Path) -> None:
     data = {"cell-3d": {"rho": np.array([0.65]), "delta": np.array([0.08])}}
     data["cell-3d"] |= {"lambda": np.array([0.83]), "eta": np.array([0.1])}
@@ -349,6 +358,7 @@ def test_a_figure_without_its_name_or_folder_is_an_error(
         (["temperature-profile", "--cells", "4,2x2"], "cells: 2x2 is a lattice"),
         (["full-counting", "--cells", "4x2"], "cells: 4x2 is a lattice"),
         (["full-counting", "--hot", "1", "--cold", "1"], "hot and cold have to differ"),
+        (["section", "--bins", "1"], "bins is 1; permitted: from 2 on"),
     ],
 )
 def test_what_a_figure_cannot_draw_is_refused_before_it_is_measured(

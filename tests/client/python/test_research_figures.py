@@ -26,6 +26,40 @@ def test_a_mean_has_the_error_of_independent_values() -> None:
     assert (fit.chi_squared, fit.freedom) == (pytest.approx(2), 1)
 
 
+def test_a_mean_of_correlated_values_has_a_larger_error() -> None:
+    ones = np.ones(2)
+    fit = fits.mean(np.array([1.0, 3.0]), ones, np.array([[1.0, 0.5], [0.5, 1.0]]))
+    assert (fit.coefficients[0], fit.errors[0]) == pytest.approx((2, np.sqrt(0.75)))
+    assert fit.chi_squared == pytest.approx(4)
+
+
+@pytest.mark.parametrize("order", [2, 3])
+def test_the_growth_of_successive_windows_is_correlated(order: int) -> None:
+    # Charges of the windows of length 1, 2, 4 and 8 in stretches of normal noise. The means of
+    # their Hermite polynomials He_n estimate the cumulants.
+    noise = np.random.default_rng(1).standard_normal((50_000, 16))
+    v = []
+    for t in (1, 2, 4, 8):
+        q = noise.reshape(50_000, -1, t).sum(axis=2)
+        hermite = q**order - order * (order - 1) / 2 * t * q ** (order - 2)
+        v.append(hermite.mean(axis=1) / t)
+    growth = [2 * later - earlier for earlier, later in zip(v, v[1:])]
+    chain = np.array([4.0, 4, 4, 6])
+    expected = charge.correlations(chain, order)
+    assert np.corrcoef(growth) == pytest.approx(expected[:3, :3], abs=0.03)  # 6 standard errors
+    assert expected[3].tolist() == [0, 0, 0, 1]
+
+
+def test_the_limit_of_a_cumulant_has_the_error_of_correlated_windows() -> None:
+    cells = np.repeat([4.0, 6, 8, 12], 5)
+    found = {"cells": cells, "order": np.full(20, 2.0), "time": np.ones(20)}
+    found |= {"value": np.ones(20), "standard_error": np.tile(2.0 ** (np.arange(5) / 2), 4)}
+    share = fits.powers(1 / cells, 2)
+    independent = fits.linear(share, found["value"], found["standard_error"])
+    limit = full_counting.extrapolated(found, 1.5, 0.5)["standard_error"][1]
+    assert 1.2 < limit / independent.errors[0] < 1.6
+
+
 def point_with_curve(order: int, value: Any, error: Any) -> Any:
     time = 2.0 ** np.arange(len(value))
     name = f"charge_cumulant_{order}_by_window"

@@ -1,8 +1,9 @@
 """Conductivities of gases over the static one: against delta, and of rare exchanges against 1/N
 
 The Green-Kubo conductivity, divided by the static conductivity (half of the exchange rate), with
-one standard error. Left: the billiard against delta. Right: rings of N cells in the limit of rare
-exchanges, against 1/N. The line is the value of the infinite gas, from Varadhan's formula.
+one standard error; a hollow point has no known error. Left: the billiard against delta. Right:
+rings of N cells in the limit of rare exchanges, against 1/N. The line is the value of the infinite
+gas, from Varadhan's formula.
 Time on two cores: quick 3 s, default 50 s, full 5 min.
 """
 
@@ -17,7 +18,7 @@ from ballpiston.figures.parts.tables import Table, Tables, estimates, rows
 from ballpiston.parameter_lists import Numbers, Shapes
 
 EFFORT = {
-    "quick": {"billiard_samples": 3000, "samples": 500},
+    "quick": {"billiard_samples": 3000, "samples": 1000},
     "full": {"billiard_samples": 300_000},
 }
 

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
 from ballpiston.figures.parts.asking import RHO, answer, check_chains
-from ballpiston.figures.parts.charge import combined
+from ballpiston.figures.parts.charge import combined, correlations
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, rows, table
 from ballpiston.parameter_lists import Shapes
 from ballpiston.point import Point
@@ -114,10 +114,11 @@ def extrapolated(found: Table, hot: float, cold: float) -> Table:
     for order, limit in enumerate(limits(hot, cold), 1):
         part = rows(found, order=order)
         terms = fits.powers(1 / part["cells"].astype(float), _DEGREE)
-        plain = fit = fits.linear(terms, part["value"], part["standard_error"])
+        measured = part["value"], part["standard_error"], correlations(part["cells"], order)
+        plain = fit = fits.linear(terms, *measured)
         if order > 2:
             terms = np.column_stack([terms, transient(part["time"])])
-            fit = fits.linear(terms, part["value"], part["standard_error"])
+            fit = fits.linear(terms, *measured)
         row = {"order": order, "limit": limit, "standard_error": fit.errors[0]}
         names = [f"a{k}" for k in range(_DEGREE + 1)] + ["b"]
         row |= {"b": 0.0} | dict(zip(names, fit.coefficients))
@@ -142,10 +143,13 @@ def _draw_cumulant(axes: Any, part: Table, fit: Table) -> None:
     if not len(part["cells"]):
         style.inside(axes, 0.5, 0.5, "not measured: too few collisions", ha="center")
         return
-    limit = fit["limit"][0]
+    limit, order = fit["limit"][0], int(fit["order"][0])
     settled = part | {"value": part["value"] - fit["b"][0] * transient(part["time"])}
     chains = [rows(settled, cells=cells) for cells in distinct(part["cells"])]
-    means = [fits.mean(chain["value"], chain["standard_error"]) for chain in chains]
+    means = [
+        fits.mean(chain["value"], chain["standard_error"], correlations(chain["cells"], order))
+        for chain in chains
+    ]
     share = np.array([1 / chain["cells"][0] for chain in chains])
     x = np.linspace(0, 1.05 * share.max(), 100)
     curve = fits.powers(x, _DEGREE) @ [fit[f"a{k}"][0] for k in range(_DEGREE + 1)]

@@ -23,6 +23,7 @@ EFFORT = {"quick": {"orbits": 3, "bins": 8}, "full": {"orbits": 1000, "bins": 40
 
 _EVENTS = 20_000  # of each orbit
 _WINDOW = 0.0125  # half width of the interval of energies around each epsilon
+_MARGIN = 4  # windows below the largest outgoing energy, without bins
 _HIGHEST = 3.2  # density of a panel, in units of its mean
 
 
@@ -71,8 +72,9 @@ def densities(energies: Iterable[float], collisions: FloatArray, bins: int) -> T
     """Of the energy after the collisions whose energy before is near each of the energies.
 
     The bins have equal widths in u = sqrt(2 epsilon) after the collision, because the density of u
-    is finite at 0. They end one window below the largest outgoing energy, 1/2 - epsilon, where W
-    diverges. Energies without a collision or without a bin are left out."""
+    is finite at 0. They end four windows below the largest outgoing energy, 1/2 - epsilon, where W
+    diverges: nearer to it, the mean over a window is above W by more than 2 %. Energies without a
+    collision or without a bin are left out."""
     return stacked(
         part for energy in energies if (part := _densities_at(energy, collisions, bins))
     )
@@ -81,7 +83,7 @@ def densities(energies: Iterable[float], collisions: FloatArray, bins: int) -> T
 def _densities_at(energy: float, collisions: FloatArray, bins: int) -> dict[str, Any]:
     before, after = collisions.T
     chosen = after[np.abs(before - energy) < _WINDOW]
-    end = 1 - 2 * (energy + _WINDOW)
+    end = 1 - 2 * (energy + _MARGIN * _WINDOW)
     if end <= 0 or not len(chosen):
         return {}
     edges = np.linspace(0, np.sqrt(end), bins + 1)

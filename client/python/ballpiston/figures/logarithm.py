@@ -9,6 +9,7 @@ a  the growth of both parts beyond a window of 8 mean free times, at the first d
 b  the differences at 8 mean free times over x = (lambda + 2 delta)/tau_bp, against log(1/x); lines
    are fits
 
+A hollow point has too few events for an error.
 The program `slow_pistons` measures them. Time on one core: quick 5 s, default 2 min, full 15 min.
 """
 

@@ -122,7 +122,8 @@ def _draw_law(upper: Any, lower: Any, law: Table, series: list[Any]) -> None:
         dots: dict[str, Any] = {"color": style.colour(k), "markersize": 2}
         upper.semilogy(place[seen], part["density"][seen], "o", **dots)
         style.error_points(lower, place, part["ratio"], part["ratio_error"], **dots)
-    upper.step(part["lower"], part["exact"], where="post", color=style.BLACK, linewidth=1)
+    edges = [*part["lower"], part["upper"][-1]]
+    upper.stairs(part["exact"], edges, baseline=None, color=style.BLACK, linewidth=1)
     style.level(lower, 1)
 
 

@@ -56,6 +56,8 @@ def measure(
     """Collisions in equilibrium, in bins of alpha or y and of the piston's energy; wall hits among
     the events of an orbit, in bins of s and sin(phi); their exact densities; and chi-squared, to
     which the correlation of collisions and of hits adds a few units only."""
+    if bins < 2:
+        raise ValueError(f"bins is {bins}; permitted: from 2 on")
     question: dict[str, Any] = {"rho": rho, "delta": delta, "seed": seed}
     hits = client.sample("equilibrium", model="billiard", collisions=collisions, **question).all()
     orbit = client.trace_arrays(*_FIELDS_OF_A_HIT, events=events, **question)
@@ -158,9 +160,10 @@ def draw(tables: Tables) -> Figure:
         part = rows(tables["section"], section=name)
         for axes, column in zip(line, ("density", "exact_density")):
             x, y = (np.unique(part[edges]) for edges in ("first", "second"))
+            most = max(part["density"].max(), part["exact_density"].max())
             box = (x[0], 2 * x[-1] - x[-2], y[0], 2 * y[-1] - y[-2])
             shown: dict[str, Any] = {"origin": "lower", "aspect": "auto", "cmap": style.ENERGY}
-            shown |= {"vmin": 0, "vmax": part["exact_density"].max(), "extent": box}
+            shown |= {"vmin": 0, "vmax": most, "extent": box}
             axes.imshow(part[column].reshape(len(x), -1).T, **shown)
             axes.grid(False)
             axes.set(xlabel=labels[0])

@@ -5,7 +5,7 @@ Slow pistons block it for long times. The law is that Var(Q)/t grows by 2 a J^2 
 with the current J and a = lim s P(a piston exchanges nothing during s), summed over both pistons.
 
 a  Var(Q)/t over its value at the first window: the billiard at the first delta, in equilibrium, and
-   the jump process
+   the jump process; errors are those of the change from the first window
 b  the growth of Var(Q)/t over the law, at each cold temperature and at each delta
 
 The program `slow_pistons` measures a. Time on one core: quick 20 s, default 3 min, full 20 min.
@@ -135,7 +135,9 @@ def _draw_windows(axes: Any, windows: Table, delta: float) -> None:
         label = f"cold {cold:g}" + (", jump process" if model == "markov" else "")
         shown = {n: part[n][_SHOWN] for n in ("time", "value", "standard_error")}
         first = shown["value"][0]
-        value, error = shown["value"] / first, shown["standard_error"] / first
+        variance = shown["standard_error"] ** 2  # changes are independent of `first`
+        change_error = np.sqrt((variance - variance[0]).clip(0))
+        value, error = shown["value"] / first, change_error / first
         dots: dict[str, Any] = {"label": label, "markersize": 4, "linestyle": "-", "linewidth": 0.8}
         style.error_points(axes, shown["time"], value, error, style.colour(k), **dots)
     axes.set_xscale("log")

@@ -5,15 +5,15 @@ The result has v(t) = c_n(t)/t at windows that double. Its part that falls as 1/
     growth(t) = [c_n(2 t) - c_n(t)]/t = 2 v(2 t) - v(t)
 
 If successive windows are independent and Gaussian, the estimates of v(t) and v(2 t) have the
-correlation 2^((1 - n)/2), and the estimates of v(2 t) - v(t) at different t are independent for
-n = 2. The errors here are those.
+correlation 2^((1 - n)/2), and the estimates of v(2 t) - v(t) at different t are independent. Those
+of growth(t) are not. The errors here are those.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ballpiston.figures.parts.tables import Table
+from ballpiston.figures.parts.tables import FloatArray, Table
 from ballpiston.point import Point
 
 
@@ -34,3 +34,13 @@ def combined(point: Point, order: int, longer: float) -> Table:
         "value": longer * v[1:] - v[:-1],
         "standard_error": np.sqrt(variance),
     }
+
+
+def correlations(chain: FloatArray, order: int) -> FloatArray:
+    """Of growth(t) at successive windows of several chains, one below the other; `chain` has the
+    chain of each value. Chains are independent."""
+    steps = np.abs(np.subtract.outer(np.arange(len(chain)), np.arange(len(chain))))
+    ratio = 2.0 ** (order - 1)  # of the variances of v(2 t) and v(t)
+    neighbours = (2 * ratio - 1) / (4 * ratio - 3) * ratio ** (-steps / 2)
+    found: FloatArray = np.where(steps > 0, neighbours * np.equal.outer(chain, chain), 1.0)
+    return found

@@ -113,10 +113,14 @@ def axis_arrows(axes: Any, origin: Sequence[float], length: float, names: Sequen
 def error_points(
     axes: Axes, x: Any, y: Any, error: Any, color: str, label: str = "", **more: Any
 ) -> None:
-    """Points with one standard error; a missing error is not drawn."""
+    """Points with one standard error. A point whose error is not known is hollow."""
     style = {"fmt": "o", "elinewidth": 1.1, "color": color} | more
-    error = np.where(np.isfinite(error), error, 0.0)
-    axes.errorbar(x, y, yerr=error, label=label or None, **style)
+    known = np.isfinite(error)
+    line = axes.errorbar(x, y, yerr=np.where(known, error, 0.0), label=label or None, **style)[0]
+    if not known.all():
+        hollow = {"color": color, "markerfacecolor": "white", "zorder": line.get_zorder()}
+        hollow["markersize"] = line.get_markersize()
+        axes.plot(np.asarray(x)[~known], np.asarray(y)[~known], line.get_marker(), **hollow)
 
 
 def level(axes: Axes, y: float, **style: Any) -> None:
