@@ -37,7 +37,8 @@ inline constexpr double kRoundingOfAMean = 3e-14;
 
 inline bool HasStatedError(double events) { return events >= kEventsForAnError; }
 
-// `error` of the mean `value`, at least its rounding (relative), if this number of events is enough.
+// `error` of the mean `value`, at least the relative `rounding`, if this number of events is
+// enough.
 inline std::optional<double> StatedError(double events, double value, std::optional<double> error,
                                          double rounding = kRoundingOfAMean) {
   if (!error || !HasStatedError(events)) return std::nullopt;
