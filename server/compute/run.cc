@@ -232,7 +232,7 @@ uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
   has_progressed_ |= has_chunks && !lease.pilot;
   for (ChunkResult& chunk : report.chunks) {
     const bool is_early = fold.Needs(chunk.chunk) && chunk.chunk > fold.state().chunk;
-    if (is_early && !lease.pilot) journal().ChunkIsEarly(lease.point, chunk);
+    if (is_early && !lease.pilot) journal().ChunkIsEarly(lease.point, open.model(), chunk);
     samples += fold.Add(std::move(chunk));
   }
   samples += fold.AddPartial(report.partial);
@@ -277,7 +277,7 @@ void Run::CheckpointIfDue(size_t index, OpenPoint& open, bool at_once) {
   const double between = at_once ? 0 : kBetweenCheckpoints * workers_;
   if (!open.fold().HasBlocks() || open.work < open.work_at_checkpoint + between) return;
   open.work_at_checkpoint = open.work;
-  journal().Checkpoint(index, open.fold().state());
+  journal().Checkpoint(index, open.model(), open.fold().state());
 }
 
 void Run::WriteCheckpoints() {
