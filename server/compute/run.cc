@@ -243,6 +243,7 @@ uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
         {.point = lease.point, .samples = samples, .share_of_point = open.ShareOf(samples)});
   }
   if (!fold.finished()) EndIfBudgetIsSpent(lease, open, report.begun);
+  if (fold.finished()) NoteShortfall(lease.point, open);
   // The files of an executor elsewhere may go when the lease ends, so its chunks are written now.
   const bool at_once = !lease.local || (request_.suspicion && has_chunks);
   if (!fold.finished() && samples > 0) CheckpointIfDue(lease.point, open, at_once);
@@ -254,8 +255,7 @@ uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
 // its point, but not on a server with a cluster, where such blocks are dropped. Blocks of
 // trajectories take a time that does not depend on what happens in them.
 void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun) {
-  const Target& target = spec_->target;
-  if (!target.budget_seconds || open.work < BudgetOfAPoint(*spec_, workers_)) return;
+  if (!spec_->target.budget_seconds || open.work < BudgetOfAPoint(*spec_, workers_)) return;
   const ChunkPlan& plan = open.experiment()->plan();
   const bool has_the_rest =
       lease.start.chunk <= open.fold().state().chunk && lease.end == plan.chunks();
@@ -263,14 +263,17 @@ void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun
     open.RequestEnd();
     return;
   }
-  if (!open.fold().HasBlocks()) return;
-  open.fold().Finish();
-  if (!target.tolerance) return;
+  if (open.fold().HasBlocks()) open.fold().Finish();
+}
+
+void Run::NoteShortfall(size_t point, const OpenPoint& open) {
+  const std::optional<double>& tolerance = spec_->target.tolerance;
+  if (!tolerance || !open.fold().HasBlocks()) return;
   const Estimate reached = open.experiment()->FirstEstimate(open.fold().Merged());
-  if (RelativeError(reached) <= *target.tolerance) return;
+  if (RelativeError(reached) <= *tolerance) return;
   std::optional<Shortfall>& first = request_.shortfall;
-  if (first && first->point < lease.point) return;
-  first = {lease.point, ToleranceNotReached(*spec_, lease.point, reached)};
+  if (first && first->point < point) return;
+  first = {point, ToleranceNotReached(*spec_, point, reached)};
 }
 
 void Run::CheckpointIfDue(size_t index, OpenPoint& open, bool at_once) {

@@ -119,6 +119,9 @@ class Run {
   // Merges what was computed of the lease into `open`, its point or pilot, and tells the journal.
   // Returns the number of merged samples.
   uint64_t Merge(const Lease& lease, OpenPoint& open, LeaseReport report);
+  // The point is finished. If it has not reached its tolerance, because the budget or the largest
+  // number of samples is used up, the run fails at its end.
+  void NoteShortfall(size_t point, const OpenPoint& open);
   // Of unfinished points with work since their last checkpoint.
   void WriteCheckpoints();
 

@@ -275,6 +275,7 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
     run.journal().PointFinished(index, *open->experiment(), open->fold());
     MutexLock lock(mutex_);
     run.NoteProgress(index);
+    run.NoteShortfall(index, *open);
     return absl::OkStatus();
   }
   MutexLock lock(mutex_);
