@@ -63,8 +63,10 @@ std::optional<Lease> Run::NextLeaseBefore(const Lease& held, const Capacity& cap
   return lease ? std::move(lease) : NextChunks(capacity, held.point);
 }
 
-std::optional<Lease> Run::NextChunksOfPilot(const Capacity& capacity) {
+std::optional<Lease> Run::NextChunksOfPilot(const Capacity& capacity,
+                                            const std::optional<PilotPlace>& only) {
   for (const auto& [place, pilot] : pilots_) {
+    if (only && place != *only) continue;
     auto lease = pilot->NextChunks(capacity);
     if (!lease) {
       NoteAwaited(*pilot, capacity);
@@ -109,7 +111,7 @@ bool Run::IsHeldBack(size_t point) const {
 }
 
 Lease Run::Completed(Lease lease) const {
-  lease.run = request_.key;
+  lease.run = lease.payer = request_.key;
   lease.generation = request_.generation;
   lease.spec = spec_;
   return lease;

@@ -85,6 +85,12 @@ class Run {
   // A new lease that goes before `held` (Lease::GoesBefore); empty if there is none.
   std::optional<Lease> NextLeaseBefore(const Lease& held, const Capacity& capacity);
 
+  // A new lease of a pilot that the run owns; with `only`, of this one. Empty if there is none.
+  std::optional<Lease> NextChunksOfPilot(const Capacity& capacity,
+                                         const std::optional<PilotPlace>& only = {});
+  // The pilots for which points wait, with these points.
+  const std::map<PilotPlace, std::vector<size_t>>& waiting() const { return waiting_; }
+
   // Whether executors that are not local wait for points that nobody has opened: the next lease of
   // a local executor opens points.
   bool IsWantedElsewhere() const;
@@ -152,7 +158,6 @@ class Run {
   bool Begin() { return !std::exchange(began_, true); }
 
  private:
-  std::optional<Lease> NextChunksOfPilot(const Capacity& capacity);
   // The lease has chunks of a point whose index is less than `end`.
   std::optional<Lease> NextChunks(const Capacity& capacity, size_t end);
   std::optional<Lease> NextOpening();
