@@ -106,7 +106,7 @@ void RecordEnd(Store& store, const std::shared_ptr<Job>& job, const JobJournal::
 }
 
 // Empty if the job that is continued is gone, or does not have the point.
-std::optional<EarlierPoint> ReadEarlier(Database& database, const std::string& job, int64_t point) {
+std::optional<StoredState> ReadEarlier(Database& database, const std::string& job, int64_t point) {
   const std::optional<std::string> id = JobIdOf(job);
   const std::optional<JobRecord> record =
       id ? FindJob(database, *id, Grid::kLeftOut) : std::nullopt;
@@ -114,7 +114,7 @@ std::optional<EarlierPoint> ReadEarlier(Database& database, const std::string& j
   const std::optional<PointEnd> end = ReadEnd(database, record->sequence, point);
   if (!end) return std::nullopt;
   absl::StatusOr<FoldState> state = EndFromBytes(end->state);
-  if (state.ok()) return EarlierPoint{static_cast<Model>(end->model), *std::move(state)};
+  if (state.ok()) return StoredState{static_cast<Model>(end->model), *std::move(state)};
   LogError(absl::StrCat("point ", point, " of ", job,
                         " cannot be continued and is computed anew: ", state.status().message()));
   return std::nullopt;
@@ -156,7 +156,7 @@ absl::StatusOr<StoredPoint> JobJournal::ReadPoint(size_t point) {
     const int64_t sequence = job_->row().sequence;
     const auto index = static_cast<int64_t>(point);
     if (const auto checkpoint = ReadCheckpoint(database, sequence, index)) {
-      stored.state = database.ValueOf(FoldStateFromBytes(*checkpoint));
+      stored.state = database.ValueOf(CheckpointFromBytes(*checkpoint));
     }
     for (const std::string& chunk : ReadChunks(database, sequence, index)) {
       stored.chunks.push_back(database.ValueOf(ChunkFromBytes(chunk)));
@@ -179,18 +179,18 @@ uint64_t JobJournal::Merged(const MergedSamples& merged) {
   return change;
 }
 
-void JobJournal::Checkpoint(size_t point, const FoldState& state) {
+void JobJournal::Checkpoint(size_t point, Model model, const FoldState& state) {
   // Shared, because the store's closures must be copyable. Serialized only if it is written.
   auto copy = std::make_shared<const FoldState>(state);
   const size_t bytes = BytesHeld(copy->complete) + BytesHeld(copy->partial);
   store_.RecordCheckpoint(
       job_->row().sequence, static_cast<int64_t>(point), state.chunk,
-      [copy = std::move(copy)] { return FoldRecordBytes(*copy); }, bytes);
+      [copy = std::move(copy), model] { return FoldRecordBytes(*copy, model); }, bytes);
 }
 
-void JobJournal::ChunkIsEarly(size_t point, const ChunkResult& chunk) {
+void JobJournal::ChunkIsEarly(size_t point, Model model, const ChunkResult& chunk) {
   store_.RecordChunk(job_->row().sequence, static_cast<int64_t>(point), chunk.chunk,
-                     ChunkRecordBytes(chunk));
+                     ChunkRecordBytes(chunk, model));
 }
 
 void JobJournal::Worked(double seconds) { job_->Add({.work = seconds}); }

@@ -28,8 +28,8 @@ class JobJournal : public RunJournal {
   void Began() override;
   absl::StatusOr<StoredPoint> ReadPoint(size_t point) override;
   uint64_t Merged(const MergedSamples& merged) override;
-  void Checkpoint(size_t point, const FoldState& state) override;
-  void ChunkIsEarly(size_t point, const ChunkResult& chunk) override;
+  void Checkpoint(size_t point, Model model, const FoldState& state) override;
+  void ChunkIsEarly(size_t point, Model model, const ChunkResult& chunk) override;
   void Worked(double seconds) override;
   void PointFinished(size_t point, const PointExperiment& experiment,
                      const PointFold& fold) override;

@@ -31,11 +31,13 @@ bool IsOfOtherEngine(const JobRecord& record) {
 // Sets the first finished point that missed its tolerance, if any.
 void ReadShortfall(Database& database, const JobRecord& record, const EnsembleSpec& spec,
                    std::optional<Shortfall>& shortfall) {
-  if (!spec.target.tolerance || !spec.target.budget_seconds) return;
+  if (!spec.target.tolerance) return;
   ReadResults(database, record.sequence, 0, Details::kLeftOut, [&](const PointRow& row) {
     const v1::PointResult result = database.ValueOf(ResultFromBytes(row.result));
     const Estimate reached = FirstEstimateOf(result);
-    if (RelativeError(reached) <= *spec.target.tolerance) return true;
+    // Without a budget, a point without samples has an answer that needs none.
+    const bool may_miss = row.samples > 0 || spec.target.budget_seconds;
+    if (!may_miss || RelativeError(reached) <= *spec.target.tolerance) return true;
     const auto point = static_cast<size_t>(row.point);
     shortfall = {point, ToleranceNotReached(spec, point, reached)};
     return false;

@@ -22,18 +22,16 @@ OpenPoint::OpenPoint(std::shared_ptr<const PointExperiment> experiment)
 // ---- what was computed before ----
 
 absl::Status OpenPoint::Resume(StoredPoint stored) {
-  // With a budget the earlier process may have chosen a model that samples, and this one a model
-  // that does not.
-  if (fold_.finished()) return absl::OkStatus();
-  if (stored.state) {
-    absl::Status checked = CheckFoldState(*experiment_, *stored.state);
+  if (stored.state && stored.state->model == model()) {
+    absl::Status checked = CheckFoldState(*experiment_, stored.state->state);
     if (!checked.ok()) return checked;
-    ContinueFrom(*std::move(stored.state));
-  } else if (stored.earlier && stored.earlier->model == experiment_->answer().model &&
+    ContinueFrom(std::move(stored.state->state));
+  } else if (stored.earlier && stored.earlier->model == model() &&
              CanContinueFrom(*experiment_, stored.earlier->state)) {
     ContinueFrom(std::move(stored.earlier->state));
   }
-  for (ChunkResult& chunk : stored.chunks) {
+  for (auto& [chunks_model, chunk] : stored.chunks) {
+    if (chunks_model != model()) continue;
     absl::Status checked = CheckChunk(*experiment_, chunk);
     if (!checked.ok()) return checked;
     fold_.Add(std::move(chunk));

@@ -22,10 +22,12 @@ class OpenPoint {
   explicit OpenPoint(std::shared_ptr<const PointExperiment> experiment);
 
   const std::shared_ptr<const PointExperiment>& experiment() const { return experiment_; }
+  Model model() const { return experiment_->answer().model; }
   PointFold& fold() { return fold_; }
   const PointFold& fold() const { return fold_; }
 
-  // Continues from what the store has of the point. Before any chunk is leased. DATA_LOSS if it
+  // Continues from what the store has of the point, before any chunk is leased. Drops what another
+  // model computed: with a budget, an earlier process may have chosen one. DATA_LOSS if the rest
   // does not fit the experiment.
   absl::Status Resume(StoredPoint stored);
 

@@ -63,8 +63,10 @@ std::optional<Lease> Run::NextLeaseBefore(const Lease& held, const Capacity& cap
   return lease ? std::move(lease) : NextChunks(capacity, held.point);
 }
 
-std::optional<Lease> Run::NextChunksOfPilot(const Capacity& capacity) {
+std::optional<Lease> Run::NextChunksOfPilot(const Capacity& capacity,
+                                            const std::optional<PilotPlace>& only) {
   for (const auto& [place, pilot] : pilots_) {
+    if (only && place != *only) continue;
     auto lease = pilot->NextChunks(capacity);
     if (!lease) {
       NoteAwaited(*pilot, capacity);
@@ -109,7 +111,7 @@ bool Run::IsHeldBack(size_t point) const {
 }
 
 Lease Run::Completed(Lease lease) const {
-  lease.run = request_.key;
+  lease.run = lease.payer = request_.key;
   lease.generation = request_.generation;
   lease.spec = spec_;
   return lease;
@@ -232,7 +234,7 @@ uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
   has_progressed_ |= has_chunks && !lease.pilot;
   for (ChunkResult& chunk : report.chunks) {
     const bool is_early = fold.Needs(chunk.chunk) && chunk.chunk > fold.state().chunk;
-    if (is_early && !lease.pilot) journal().ChunkIsEarly(lease.point, chunk);
+    if (is_early && !lease.pilot) journal().ChunkIsEarly(lease.point, open.model(), chunk);
     samples += fold.Add(std::move(chunk));
   }
   samples += fold.AddPartial(report.partial);
@@ -243,6 +245,7 @@ uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
         {.point = lease.point, .samples = samples, .share_of_point = open.ShareOf(samples)});
   }
   if (!fold.finished()) EndIfBudgetIsSpent(lease, open, report.begun);
+  if (fold.finished()) NoteShortfall(lease.point, open);
   // The files of an executor elsewhere may go when the lease ends, so its chunks are written now.
   const bool at_once = !lease.local || (request_.suspicion && has_chunks);
   if (!fold.finished() && samples > 0) CheckpointIfDue(lease.point, open, at_once);
@@ -254,8 +257,7 @@ uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
 // its point, but not on a server with a cluster, where such blocks are dropped. Blocks of
 // trajectories take a time that does not depend on what happens in them.
 void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun) {
-  const Target& target = spec_->target;
-  if (!target.budget_seconds || open.work < BudgetOfAPoint(*spec_, workers_)) return;
+  if (!spec_->target.budget_seconds || open.work < BudgetOfAPoint(*spec_, workers_)) return;
   const ChunkPlan& plan = open.experiment()->plan();
   const bool has_the_rest =
       lease.start.chunk <= open.fold().state().chunk && lease.end == plan.chunks();
@@ -263,21 +265,24 @@ void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun
     open.RequestEnd();
     return;
   }
-  if (!open.fold().HasBlocks()) return;
-  open.fold().Finish();
-  if (!target.tolerance) return;
+  if (open.fold().HasBlocks()) open.fold().Finish();
+}
+
+void Run::NoteShortfall(size_t point, const OpenPoint& open) {
+  const std::optional<double>& tolerance = spec_->target.tolerance;
+  if (!tolerance || !open.fold().HasBlocks()) return;
   const Estimate reached = open.experiment()->FirstEstimate(open.fold().Merged());
-  if (RelativeError(reached) <= *target.tolerance) return;
+  if (RelativeError(reached) <= *tolerance) return;
   std::optional<Shortfall>& first = request_.shortfall;
-  if (first && first->point < lease.point) return;
-  first = {lease.point, ToleranceNotReached(*spec_, lease.point, reached)};
+  if (first && first->point < point) return;
+  first = {point, ToleranceNotReached(*spec_, point, reached)};
 }
 
 void Run::CheckpointIfDue(size_t index, OpenPoint& open, bool at_once) {
   const double between = at_once ? 0 : kBetweenCheckpoints * workers_;
   if (!open.fold().HasBlocks() || open.work < open.work_at_checkpoint + between) return;
   open.work_at_checkpoint = open.work;
-  journal().Checkpoint(index, open.fold().state());
+  journal().Checkpoint(index, open.model(), open.fold().state());
 }
 
 void Run::WriteCheckpoints() {

@@ -85,6 +85,12 @@ class Run {
   // A new lease that goes before `held` (Lease::GoesBefore); empty if there is none.
   std::optional<Lease> NextLeaseBefore(const Lease& held, const Capacity& capacity);
 
+  // A new lease of a pilot that the run owns; with `only`, of this one. Empty if there is none.
+  std::optional<Lease> NextChunksOfPilot(const Capacity& capacity,
+                                         const std::optional<PilotPlace>& only = {});
+  // The pilots for which points wait, with these points.
+  const std::map<PilotPlace, std::vector<size_t>>& waiting() const { return waiting_; }
+
   // Whether executors that are not local wait for points that nobody has opened: the next lease of
   // a local executor opens points.
   bool IsWantedElsewhere() const;
@@ -119,6 +125,9 @@ class Run {
   // Merges what was computed of the lease into `open`, its point or pilot, and tells the journal.
   // Returns the number of merged samples.
   uint64_t Merge(const Lease& lease, OpenPoint& open, LeaseReport report);
+  // The point is finished. If it has not reached its tolerance, because the budget or the largest
+  // number of samples is used up, the run fails at its end.
+  void NoteShortfall(size_t point, const OpenPoint& open);
   // Of unfinished points with work since their last checkpoint.
   void WriteCheckpoints();
 
@@ -149,7 +158,6 @@ class Run {
   bool Begin() { return !std::exchange(began_, true); }
 
  private:
-  std::optional<Lease> NextChunksOfPilot(const Capacity& capacity);
   // The lease has chunks of a point whose index is less than `end`.
   std::optional<Lease> NextChunks(const Capacity& capacity, size_t end);
   std::optional<Lease> NextOpening();

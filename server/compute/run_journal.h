@@ -15,19 +15,16 @@
 #include "absl/status/statusor.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
+#include "server/convert/fold_record.h"
 
 namespace ballpiston::server {
 
-// Where a point of an earlier job ended, which asked the same question with another target.
-struct EarlierPoint {
-  Model model = Model::kAuto;
-  FoldState state;
-};
-
 struct StoredPoint {
-  std::optional<FoldState> state;            // empty: there is no checkpoint
-  std::vector<ChunkResult> chunks = {};      // that arrived early
-  std::optional<EarlierPoint> earlier = {};  // if there is no checkpoint
+  std::optional<StoredState> state;      // empty: there is no checkpoint
+  std::vector<StoredChunk> chunks = {};  // that arrived early
+  // If there is no checkpoint: where the point of an earlier job ended, which asked the same
+  // question with another target.
+  std::optional<StoredState> earlier = {};
 };
 
 class RunJournal {
@@ -54,12 +51,12 @@ class RunJournal {
   // history.
   virtual uint64_t Merged(const MergedSamples& merged) = 0;
 
-  // Called from time to time with the state of an unfinished point. Chunks before state.chunk that
-  // arrived early are part of the state.
-  virtual void Checkpoint(size_t point, const FoldState& state) = 0;
+  // Called from time to time with the state of an unfinished point, which the model computes.
+  // Chunks before state.chunk that arrived early are part of the state.
+  virtual void Checkpoint(size_t point, Model model, const FoldState& state) = 0;
 
   // A chunk that waits for an earlier one.
-  virtual void ChunkIsEarly(size_t point, const ChunkResult& chunk) = 0;
+  virtual void ChunkIsEarly(size_t point, Model model, const ChunkResult& chunk) = 0;
 
   // Seconds of processor time that an executor has just spent on the run.
   virtual void Worked(double seconds) = 0;

@@ -155,7 +155,7 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
     MutexLock lock(mutex_);
     while (!shutting_down_ && !(lease = Choose(capacity)) && capacity.waits) woken_.Wait(mutex_);
     if (!lease) return std::nullopt;
-    SharesOf(*lease).TurnBegins(lease->run);
+    SharesOf(*lease).TurnBegins(lease->payer);
     run = runs_.at(lease->run);
     if (lease->local) run->TurnBegins();
     begins = run->Begin();
@@ -174,6 +174,7 @@ std::optional<Lease> Scheduler::Choose(const Capacity& capacity) {
     if (!MayTakeTurn(run, capacity.local)) return false;
     lease = NextOf(run, capacity.local ? WithBounds(capacity, run) : capacity);
     if (capacity.local) held_.NoteAwaited(run.key(), lease ? 0 : run.awaited_memory());
+    if (capacity.local && !lease) lease = NextOfAwaitedPilot(run, capacity);
     return lease.has_value();
   });
   const bool none_waits_now = one_waited && !held_.OneWaits();  // the others have memory again
@@ -186,12 +187,30 @@ Capacity Scheduler::WithBounds(const Capacity& capacity, const Run& run) const {
   return bounded;
 }
 
-std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
+// The run takes a turn at a pilot of another run. Otherwise it would wait for the turns of that
+// run, which may have a lower priority.
+std::optional<Lease> Scheduler::NextOfAwaitedPilot(const Run& run, const Capacity& capacity) {
+  for (const auto& [place, points] : run.waiting()) {
+    const auto pilot = pilots_.find(place);
+    const RunPointer owner = pilot == pilots_.end() ? nullptr : FindRun(pilot->second);
+    if (owner == nullptr || &*owner == &run || !MayTakeTurn(*owner, true)) continue;
+    std::optional<Lease> lease = NextOf(*owner, WithBounds(capacity, *owner), place);
+    if (!lease) continue;
+    lease->payer = run.key();
+    return lease;
+  }
+  return std::nullopt;
+}
+
+std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity,
+                                       const std::optional<PilotPlace>& pilot) {
   const bool may_continue = capacity.local && !run.stopped() && !run.IsWantedElsewhere();
-  HeldLeases::Held* held = may_continue ? held_.FirstWithTurn(run.key()) : nullptr;
+  HeldLeases::Held* held = may_continue ? held_.FirstWithTurn(run.key(), pilot) : nullptr;
   std::optional<Lease> lease;
   if (suspects_.empty() || !held_.HasLocal(run.key())) {
-    lease = held != nullptr ? run.NextLeaseBefore(held->lease, capacity) : run.NextLease(capacity);
+    lease = held != nullptr ? run.NextLeaseBefore(held->lease, capacity)
+            : pilot         ? run.NextChunksOfPilot(capacity, pilot)
+                            : run.NextLease(capacity);
   }
   if (lease) {
     if (lease->OpensPoints()) return lease;
@@ -211,7 +230,7 @@ void Scheduler::EndTurn(const Lease& lease, double seconds) {
     run = FindRun(lease.run);
     run->journal().Worked(seconds);
     run->TurnEnds();
-    SharesOf(lease).TurnEnds(lease.run, seconds);
+    SharesOf(lease).TurnEnds(lease.payer, seconds);
     if (!lease.OpensPoints()) held_.EndTurn(lease);
   }
   Wake();
@@ -275,6 +294,7 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
     run.journal().PointFinished(index, *open->experiment(), open->fold());
     MutexLock lock(mutex_);
     run.NoteProgress(index);
+    run.NoteShortfall(index, *open);
     return absl::OkStatus();
   }
   MutexLock lock(mutex_);

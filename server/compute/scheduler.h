@@ -116,7 +116,11 @@ class Scheduler {
   Capacity WithBounds(const Capacity& capacity, const Run& run) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> Choose(const Capacity& capacity) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::optional<Lease> NextOf(Run& run, const Capacity& capacity)
+  // With `pilot`, of this pilot alone, which the run owns.
+  std::optional<Lease> NextOf(Run& run, const Capacity& capacity,
+                              const std::optional<PilotPlace>& pilot = {})
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::optional<Lease> NextOfAwaitedPilot(const Run& run, const Capacity& capacity)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // StopRun also stops the run. Both return leases whose work is to be destroyed without the
   // lock: their stop was requested, and no local turn at them is in progress.

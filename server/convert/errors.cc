@@ -127,11 +127,13 @@ absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const E
       reached.standard_error
           ? absl::StrFormat("%.2g", *reached.standard_error / std::fabs(reached.value))
           : "an unknown error";
-  return WithReason(
-      absl::DeadlineExceededError(absl::StrFormat(
-          "point %d: tolerance %g was not reached within the budget of %g s: reached %s", point,
-          *spec.target.tolerance, *spec.target.budget_seconds, error)),
-      "TOLERANCE_NOT_REACHED", {{"reached", error}});
+  const std::optional<double>& budget = spec.target.budget_seconds;
+  const std::string within =
+      budget ? absl::StrFormat("within the budget of %g s", *budget) : "with the most samples";
+  return WithReason(absl::DeadlineExceededError(
+                        absl::StrFormat("point %d: tolerance %g was not reached %s: reached %s",
+                                        point, *spec.target.tolerance, within, error)),
+                    "TOLERANCE_NOT_REACHED", {{"reached", error}});
 }
 
 absl::Status StoreFailure(const absl::Status& status) {

@@ -79,8 +79,8 @@ inline constexpr FixedError EngineCrashed = {
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,
                            const std::string& flag, double limit);
 
-// DEADLINE_EXCEEDED: a point's budget was spent before the tolerance was reached. The message gives
-// the error that was reached.
+// DEADLINE_EXCEEDED: a point's budget was spent, or it had the largest number of samples, before
+// the tolerance was reached. The message gives the error that was reached.
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached);
 
 // The status of a call when a write to the store or a read from it failed. UNAVAILABLE, STORE_FULL:

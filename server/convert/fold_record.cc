@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "server/convert/compressed.h"
 #include "server/convert/deterministic_bytes.h"
@@ -138,26 +139,34 @@ ChunkResult ChunkOf(const storage::Chunk& record) {
   return {.chunk = record.chunk(), .result = ResultOfAccumulators(record.result())};
 }
 
-std::string FoldRecordBytes(const FoldState& state) {
+std::string FoldRecordBytes(const FoldState& state, Model model) {
   storage::Checkpoint record;
   record.set_chunk(state.chunk);
   record.set_blocks(state.blocks);
   FillAccumulators(state.complete, *record.mutable_complete());
   FillAccumulators(state.partial, *record.mutable_partial());
   record.set_least_error(state.least_error);
+  record.set_model(static_cast<uint32_t>(model));
   return DeterministicBytes(record);
 }
 
-absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes) {
+absl::StatusOr<StoredState> CheckpointFromBytes(const std::string& bytes) {
   storage::Checkpoint record;
   if (!record.ParseFromString(bytes)) {
     return absl::DataLossError("a stored checkpoint cannot be read");
   }
-  return FoldState{.chunk = record.chunk(),
-                   .blocks = record.blocks(),
-                   .complete = ResultOfAccumulators(record.complete()),
-                   .partial = ResultOfAccumulators(record.partial()),
-                   .least_error = record.least_error()};
+  return StoredState{static_cast<Model>(record.model()),
+                     {.chunk = record.chunk(),
+                      .blocks = record.blocks(),
+                      .complete = ResultOfAccumulators(record.complete()),
+                      .partial = ResultOfAccumulators(record.partial()),
+                      .least_error = record.least_error()}};
+}
+
+absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes) {
+  absl::StatusOr<StoredState> read = CheckpointFromBytes(bytes);
+  if (!read.ok()) return read.status();
+  return std::move(read->state);
 }
 
 std::string EndBytes(const FoldState& state) { return Compressed(FoldRecordBytes(state)); }
@@ -168,16 +177,17 @@ absl::StatusOr<FoldState> EndFromBytes(const std::string& bytes) {
   return absl::DataLossError("the stored final state of a point cannot be read");
 }
 
-std::string ChunkRecordBytes(const ChunkResult& chunk) {
+std::string ChunkRecordBytes(const ChunkResult& chunk, Model model) {
   storage::Chunk record;
+  record.set_model(static_cast<uint32_t>(model));
   FillChunk(chunk, record);
   return DeterministicBytes(record);
 }
 
-absl::StatusOr<ChunkResult> ChunkFromBytes(const std::string& bytes) {
+absl::StatusOr<StoredChunk> ChunkFromBytes(const std::string& bytes) {
   storage::Chunk record;
   if (!record.ParseFromString(bytes)) return absl::DataLossError("a stored chunk cannot be read");
-  return ChunkOf(record);
+  return StoredChunk{static_cast<Model>(record.model()), ChunkOf(record)};
 }
 
 absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& state) {

@@ -15,6 +15,16 @@
 
 namespace ballpiston::server {
 
+struct StoredState {
+  Model model = Model::kAuto;  // that computed it
+  FoldState state;
+};
+
+struct StoredChunk {
+  Model model = Model::kAuto;
+  ChunkResult chunk;
+};
+
 void FillAccumulators(const BlockResult& result, storage::Accumulators& record);
 void FillGroup(const GroupState& group, storage::Group& record);
 GroupState GroupOf(const storage::Group& record);
@@ -22,15 +32,16 @@ BlockResult ResultOfAccumulators(const storage::Accumulators& record);
 void FillChunk(const ChunkResult& chunk, storage::Chunk& record);
 ChunkResult ChunkOf(const storage::Chunk& record);
 
-std::string FoldRecordBytes(const FoldState& state);
-absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes);  // DATA_LOSS
+std::string FoldRecordBytes(const FoldState& state, Model model = Model::kAuto);
+absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes);     // DATA_LOSS
+absl::StatusOr<StoredState> CheckpointFromBytes(const std::string& bytes);  // DATA_LOSS
 
 // The final state of a finished point, compressed. Another job can continue from it.
 std::string EndBytes(const FoldState& state);
 absl::StatusOr<FoldState> EndFromBytes(const std::string& bytes);  // DATA_LOSS
 
-std::string ChunkRecordBytes(const ChunkResult& chunk);
-absl::StatusOr<ChunkResult> ChunkFromBytes(const std::string& bytes);  // DATA_LOSS
+std::string ChunkRecordBytes(const ChunkResult& chunk, Model model = Model::kAuto);
+absl::StatusOr<StoredChunk> ChunkFromBytes(const std::string& bytes);  // DATA_LOSS
 
 // DATA_LOSS unless all of this holds: the state lies within the plan, it has at most the planned
 // samples, its energy error is valid, it has the accumulators that merging needs, no histogram

@@ -49,7 +49,7 @@ TEST(OpenPoint, ALeaseElsewhereContinuesTheBlocksOfAResumedPoint) {
   OpenPoint point = PointOf(SixChunks());
   const FoldState state = FakeState(SixChunks(), 0, 100);
   ASSERT_GT(state.blocks, 0u);  // of a chunk that is not complete
-  ASSERT_OK(point.Resume({.state = state}));
+  ASSERT_OK(point.Resume({.state = StoredState{Model::kBilliard, state}}));
   const auto lease = point.NextChunks({.local = kElsewhere, .seconds = 0});
   ASSERT_TRUE(lease);
   EXPECT_EQ(lease->start.chunk, state.chunk);
@@ -75,10 +75,28 @@ TEST(OpenPoint, ChunksThatArrivedEarlyAreSkipped) {
 TEST(OpenPoint, OnlyChunksThatAreNotStoredAreLeased) {
   OpenPoint point = PointOf(SixChunks());
   StoredPoint stored;
-  stored.chunks = ChunksOf(point, 1, 3);
+  for (ChunkResult& chunk : ChunksOf(point, 1, 3)) {
+    stored.chunks.push_back({Model::kBilliard, std::move(chunk)});
+  }
   ASSERT_OK(point.Resume(std::move(stored)));
   EXPECT_EQ(Next(point, 1000), Chunks(0, 1));
   EXPECT_EQ(Next(point, 1000), Chunks(3, 6));
+}
+
+// With a budget, the earlier process may have chosen it.
+TEST(OpenPoint, WhatAnotherModelComputedIsDropped) {
+  OpenPoint point = PointOf(SixChunks());
+  FoldState of_another_plan = FakeState(SixChunks(), 0, 100);
+  of_another_plan.chunk = 100;
+  StoredPoint stored = {.state = StoredState{Model::kMarkov, of_another_plan}};
+  for (ChunkResult& chunk : ChunksOf(point, 1, 3)) {
+    stored.chunks.push_back({Model::kMarkov, std::move(chunk)});
+  }
+  stored.chunks.push_back({Model::kBilliard, ChunksOf(point, 3, 4)[0]});
+  ASSERT_OK(point.Resume(std::move(stored)));
+  EXPECT_FALSE(point.fold().HasBlocks());
+  EXPECT_EQ(Next(point, 1000), Chunks(0, 3));
+  EXPECT_EQ(Next(point, 1000), Chunks(4, 6));
 }
 
 TEST(OpenPoint, ReturnedChunksComeFirstAndKeepTheirAttempt) {

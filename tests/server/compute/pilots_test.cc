@@ -38,10 +38,11 @@ class FakePilot : public PointExperiment {
   const std::unique_ptr<const PointExperiment> fake_;
 };
 
-// Every point needs the pilot at kPlace. The tests look at the members.
+// Every point needs the pilot at kPlace, except those of `free_seed`. The tests look at the
+// members.
 struct PilotOpener : PointOpener {
   OpenedPoint Open(const EnsembleSpec& spec, size_t index) override {
-    if (kept.empty()) return kPlace;
+    if (kept.empty() && spec.seed != free_seed) return kPlace;
     return FakeExperiments()(spec, index);
   }
   std::unique_ptr<const PointExperiment> OpenPilot(const PilotPlace&) override {
@@ -53,6 +54,7 @@ struct PilotOpener : PointOpener {
     kept.push_back(pilot);
   }
 
+  uint64_t free_seed = 0;
   BeforeBlock before_block;  // of a pilot
   int opened = 0;            // pilots that began
   std::vector<Pilot> kept;
@@ -122,7 +124,37 @@ TEST_F(PilotsTest, APilotThatFailsEndsItsRunOnly) {
   EXPECT_EQ(opener().opened, 2);
 }
 
-TEST_F(PilotsTest, ThePilotsWorkIsChargedToTheRunThatComputesIt) {
+// The run that owns the pilot comes last, after one that needs no pilot.
+TEST_F(PilotsTest, ARunThatWaitsForAPilotComputesItInItsOwnTurns) {
+  const auto low = AddRun(1);
+  while (opener().opened == 0) ASSERT_TRUE(local_.TakeTurn(1));
+  constexpr int64_t kFreeRun = 2, kHigh = 3;
+  opener().free_seed = kFreeRun;
+  const auto free_run = AddRun(kFreeRun), high = AddRun(kHigh);
+  scheduler_.SetPriority(kFreeRun, 10);
+  scheduler_.SetPriority(kHigh, 50);
+  while (high->ends == 0) ASSERT_TRUE(local_.TakeTurn(kBlocksOfATurn));
+  EXPECT_TRUE(free_run->finished.empty());
+  EXPECT_EQ(opener().opened, 1);
+  local_.TakeAllTurns();
+  ExpectComplete(SpecOf(1), *low);
+  ExpectComplete(SpecOf(kFreeRun), *free_run);
+  ExpectComplete(SpecOf(kHigh), *high);
+}
+
+TEST_F(PilotsTest, ATurnAtAPilotIsChargedToTheRunWhoseTurnItIs) {
+  AddRun(1);
+  AddRun(2);
+  std::multiset<int64_t> payers;
+  while (const std::optional<Lease> lease = local_.Begin()) {
+    if (lease->pilot) payers.insert(lease->payer);
+    local_.End(*lease, 20, lease->pilot ? 1 : 0);
+  }
+  EXPECT_EQ(payers.count(1), 5u);
+  EXPECT_EQ(payers.count(2), 5u);
+}
+
+TEST_F(PilotsTest, ThePilotsWorkIsCountedByTheJobThatOwnsIt) {
   const auto first = AddRun(1), second = AddRun(2);
   double pilots_work = 0;
   int64_t owner = 0;

@@ -109,6 +109,27 @@ TEST(Scheduler, AMissedToleranceIsReportedAfterAllPointsAreFinished) {
                                        reached)));
 }
 
+// A fake point has 1000 blocks at most.
+TEST_F(SchedulerTest, AToleranceAloneThatTheMostSamplesDoNotReachIsMissed) {
+  const EnsembleSpec spec = WithTarget(2, {.tolerance = 1e-6});
+  const auto journal = Add(1, spec);
+  local_.TakeAllTurns();
+  EXPECT_EQ(journal->finished.size(), 2u);
+  EXPECT_EQ(journal->finished.at(0), FakeMerged(spec, 0, 1000));
+  EXPECT_THAT(*journal->outcome,
+              StatusIs(absl::StatusCode::kDeadlineExceeded, HasSubstr("point 0: tolerance 1e-06")));
+
+  const auto later = std::make_shared<RecordingJournal>();  // finds the end of the earlier point
+  later->stored[1] = FakeState(spec, 1, 1000);
+  RunRequest request = RunOf(2, spec, later);
+  request.finished[0] = true;
+  scheduler_.Add(std::move(request));
+  local_.TakeAllTurns();
+  EXPECT_TRUE(later->merged.empty());
+  EXPECT_THAT(*later->outcome,
+              StatusIs(absl::StatusCode::kDeadlineExceeded, HasSubstr("point 1: tolerance 1e-06")));
+}
+
 // The point has fewer samples than a tolerance requires without a budget (docs/answers.md).
 TEST_F(SchedulerTest, AtTheEndOfABudgetTheStatedErrorAloneDecides) {
   const auto outcome_of = [&](int64_t key, double tolerance) {

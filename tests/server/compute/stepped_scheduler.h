@@ -23,7 +23,8 @@ class RecordingJournal : public RunJournal {
       return absl::UnavailableError("the disk cannot be read");
     }
     const auto state = stored.find(point);
-    return state == stored.end() ? StoredPoint() : StoredPoint{.state = state->second};
+    if (state == stored.end()) return StoredPoint();
+    return StoredPoint{.state = StoredState{Model::kBilliard, state->second}};
   }
 
   uint64_t Merged(const MergedSamples& news) override {
@@ -32,12 +33,12 @@ class RecordingJournal : public RunJournal {
     return ++changes;
   }
 
-  void Checkpoint(size_t point, const FoldState& state) override {
+  void Checkpoint(size_t point, Model, const FoldState& state) override {
     std::lock_guard lock(mutex);
     checkpoints[point] = state;
   }
 
-  void ChunkIsEarly(size_t point, const ChunkResult& chunk) override {
+  void ChunkIsEarly(size_t point, Model, const ChunkResult& chunk) override {
     std::lock_guard lock(mutex);
     early[point].push_back(chunk);
   }

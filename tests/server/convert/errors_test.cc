@@ -66,6 +66,9 @@ TEST(Errors, AToleranceThatWasNotReachedNamesPointToleranceBudgetAndError) {
                        "reached 0.005"));
   const absl::Status without = ToleranceNotReached(spec, 0, {.name = "time", .value = 8});
   EXPECT_THAT(std::string(without.message()), HasSubstr("reached an unknown error"));
+  spec.target.budget_seconds.reset();
+  EXPECT_THAT(std::string(ToleranceNotReached(spec, 0, {.name = "time", .value = 8}).message()),
+              HasSubstr("was not reached with the most samples: reached"));
   // A job's error keeps its reason. An error without a reason gets that of a failed computation.
   EXPECT_EQ(ReasonOf(WithDefaultReason(missed, "COMPUTATION_FAILED")), "TOLERANCE_NOT_REACHED");
   EXPECT_EQ(ReasonOf(WithDefaultReason(absl::InternalError("lost"), "COMPUTATION_FAILED")),

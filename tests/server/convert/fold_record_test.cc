@@ -17,7 +17,10 @@ TEST(FoldRecord, ComesBackExactly) {
   block.histograms = {{-1.5, 1.5, {0, 1, kLargest}}};
   block.health = {2, 1e-15};
   const FoldState state = {.chunk = 2, .blocks = 3, .complete = block, .partial = {}};
-  ASSERT_OK_AND_ASSIGN(const auto back, FoldStateFromBytes(FoldRecordBytes(state)));
+  ASSERT_OK_AND_ASSIGN(const auto stored,
+                       CheckpointFromBytes(FoldRecordBytes(state, Model::kMarkov)));
+  EXPECT_EQ(stored.model, Model::kMarkov);
+  const FoldState& back = stored.state;
   EXPECT_EQ(back.chunk, 2u);
   EXPECT_EQ(back.blocks, 3u);
   EXPECT_TRUE(back.complete == block);
