@@ -33,11 +33,10 @@ void ReadShortfall(Database& database, const JobRecord& record, const EnsembleSp
                    std::optional<Shortfall>& shortfall) {
   if (!spec.target.tolerance) return;
   ReadResults(database, record.sequence, 0, Details::kLeftOut, [&](const PointRow& row) {
+    if (row.samples == 0) return true;  // the answer needs no samples
     const v1::PointResult result = database.ValueOf(ResultFromBytes(row.result));
     const Estimate reached = FirstEstimateOf(result);
-    // Without a budget, a point without samples has an answer that needs none.
-    const bool may_miss = row.samples > 0 || spec.target.budget_seconds;
-    if (!may_miss || RelativeError(reached) <= *spec.target.tolerance) return true;
+    if (RelativeError(reached) <= *spec.target.tolerance) return true;
     const auto point = static_cast<size_t>(row.point);
     shortfall = {point, ToleranceNotReached(spec, point, reached)};
     return false;

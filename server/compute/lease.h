@@ -50,7 +50,7 @@ struct Lease {
   int64_t number = 0;  // greater than those before, in the scheduler's life
   int64_t run = 0;     // these two are RunRequest's key and generation
   int64_t generation = 0;
-  int64_t payer = 0;  // the run whose turn it is: it waits for the pilot, or has the lease
+  int64_t payer = 0;  // the run that is charged: the lease's, or one that waits for its pilot
   bool local = true;  // as of Capacity
   int attempt = 1;    // greater than 1 if an executor returned some of the chunks
   int crashes = 0;    // earlier attempts that died of themselves (Scheduler::ReturnCrashed)

@@ -65,6 +65,7 @@ std::optional<Lease> Run::NextLeaseBefore(const Lease& held, const Capacity& cap
 
 std::optional<Lease> Run::NextChunksOfPilot(const Capacity& capacity,
                                             const std::optional<PilotPlace>& only) {
+  if (only) awaited_memory_ = 0;
   for (const auto& [place, pilot] : pilots_) {
     if (only && place != *only) continue;
     auto lease = pilot->NextChunks(capacity);

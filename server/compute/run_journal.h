@@ -51,7 +51,7 @@ class RunJournal {
   // history.
   virtual uint64_t Merged(const MergedSamples& merged) = 0;
 
-  // Called from time to time with the state of an unfinished point, which the model computes.
+  // Called from time to time with the state of an unfinished point and the model that computed it.
   // Chunks before state.chunk that arrived early are part of the state.
   virtual void Checkpoint(size_t point, Model model, const FoldState& state) = 0;
 

@@ -195,6 +195,7 @@ std::optional<Lease> Scheduler::NextOfAwaitedPilot(const Run& run, const Capacit
     const RunPointer owner = pilot == pilots_.end() ? nullptr : FindRun(pilot->second);
     if (owner == nullptr || &*owner == &run || !MayTakeTurn(*owner, true)) continue;
     std::optional<Lease> lease = NextOf(*owner, WithBounds(capacity, *owner), place);
+    held_.NoteAwaited(owner->key(), lease ? 0 : owner->awaited_memory());
     if (!lease) continue;
     lease->payer = run.key();
     return lease;
@@ -204,7 +205,7 @@ std::optional<Lease> Scheduler::NextOfAwaitedPilot(const Run& run, const Capacit
 
 std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity,
                                        const std::optional<PilotPlace>& pilot) {
-  const bool may_continue = capacity.local && !run.stopped() && !run.IsWantedElsewhere();
+  const bool may_continue = capacity.local && !run.stopped() && (pilot || !run.IsWantedElsewhere());
   HeldLeases::Held* held = may_continue ? held_.FirstWithTurn(run.key(), pilot) : nullptr;
   std::optional<Lease> lease;
   if (suspects_.empty() || !held_.HasLocal(run.key())) {

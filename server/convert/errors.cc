@@ -128,8 +128,8 @@ absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const E
           ? absl::StrFormat("%.2g", *reached.standard_error / std::fabs(reached.value))
           : "an unknown error";
   const std::optional<double>& budget = spec.target.budget_seconds;
-  const std::string within =
-      budget ? absl::StrFormat("within the budget of %g s", *budget) : "with the most samples";
+  const std::string within = budget ? absl::StrFormat("within the budget of %g s", *budget)
+                                    : "with the largest number of samples";
   return WithReason(absl::DeadlineExceededError(
                         absl::StrFormat("point %d: tolerance %g was not reached %s: reached %s",
                                         point, *spec.target.tolerance, within, error)),

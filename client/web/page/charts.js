@@ -4,7 +4,7 @@
 // A chart is given by
 //   {title, xLabel, yLabel, logX, logY, fromZero, top, note, lines}; y above `top` is cut off
 // and a line by
-//   {label, kind, colour, x, y, error, shift, stepped}
+//   {label, kind, colour, x, y, error, marks, shift, stepped}
 //   kind    'measured' (symbols with error bars), 'exact' (a line), 'limit' (a dashed line), or
 //           'steps' (filled from 0; y[i] holds from x[i] to x[i + 1])
 //   colour  0, 1, ...: index of colour and symbol
@@ -119,8 +119,8 @@
         see(line.y[i] + (line.error?.[i] ?? 0));
       }
     }
-    if (min > max) return [0, 1];
-    const factor = (max / min) ** ROOM;
+    if (min > max) return chart.logY ? [1, 10] : [0, 1];
+    const factor = max > min ? (max / min) ** ROOM : 2;
     if (chart.logY) return [min / factor, max * factor];
     return withRoom(min, Math.min(max, chart.top ?? max), chart.fromZero);
   }

@@ -8,7 +8,7 @@
   const PAGE = 100;
   const REFRESH = 2000; // ms
   const MOST_CALLS = 20; // for one page: with a filter a call may return no job, but more follow
-  const MOST_ASKED = 20; // jobs outside the first page that one refresh requests
+  const MOST_ASKED = 5; // jobs outside the first page that one refresh requests
 
   const STATES = {
     QUEUED: 'waits',
@@ -127,7 +127,7 @@
       const names = new Set(jobs.map((job) => job.name));
       const oldest = jobs.at(-1)?.create_time ?? '';
       for (const [name, {row}] of this.rows) {
-        const isNewer = row.querySelector('time')?.dateTime > oldest;
+        const isNewer = jobs.length > 0 && row.querySelector('time')?.dateTime > oldest;
         if (!names.has(name) && (isAll || isNewer)) this.remove(name);
       }
       let next = this.body.firstChild;
@@ -223,7 +223,7 @@
       const filter = this.filter;
       const {jobs, token} = await this.page('');
       if (filter !== this.filter) return;
-      if (!jobs.some((job) => this.rows.rows.has(job.name))) {
+      if (jobs.length > 0 && !jobs.some((job) => this.rows.rows.has(job.name))) {
         this.rows.clear();
         this.token = null;
       }
@@ -253,8 +253,9 @@
       ballpiston.clearBanner();
       const filter = this.filter;
       try {
-        const {jobs, token} = await keepTrying(() => this.page(this.token), this.signal);
-        if (filter !== this.filter) return;
+        const from = this.token;
+        const {jobs, token} = await keepTrying(() => this.page(from), this.signal);
+        if (filter !== this.filter || from !== this.token) return;
         this.rows.append(jobs);
         this.token = token;
         this.show();

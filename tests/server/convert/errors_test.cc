@@ -68,7 +68,7 @@ TEST(Errors, AToleranceThatWasNotReachedNamesPointToleranceBudgetAndError) {
   EXPECT_THAT(std::string(without.message()), HasSubstr("reached an unknown error"));
   spec.target.budget_seconds.reset();
   EXPECT_THAT(std::string(ToleranceNotReached(spec, 0, {.name = "time", .value = 8}).message()),
-              HasSubstr("was not reached with the most samples: reached"));
+              HasSubstr("was not reached with the largest number of samples: reached"));
   // A job's error keeps its reason. An error without a reason gets that of a failed computation.
   EXPECT_EQ(ReasonOf(WithDefaultReason(missed, "COMPUTATION_FAILED")), "TOLERANCE_NOT_REACHED");
   EXPECT_EQ(ReasonOf(WithDefaultReason(absl::InternalError("lost"), "COMPUTATION_FAILED")),

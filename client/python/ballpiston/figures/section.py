@@ -57,7 +57,7 @@ def measure(
     the events of an orbit, in bins of s and sin(phi); their exact densities; and chi-squared, to
     which the correlation of collisions and of hits adds a few units only."""
     if bins < 2:
-        raise ValueError(f"bins is {bins}; permitted: from 2 on")
+        raise ValueError(f"bins is {bins}; permitted: 2 or more")
     question: dict[str, Any] = {"rho": rho, "delta": delta, "seed": seed}
     hits = client.sample("equilibrium", model="billiard", collisions=collisions, **question).all()
     orbit = client.trace_arrays(*_FIELDS_OF_A_HIT, events=events, **question)

@@ -5,8 +5,8 @@ The result has v(t) = c_n(t)/t at windows that double. Its part that falls as 1/
     growth(t) = [c_n(2 t) - c_n(t)]/t = 2 v(2 t) - v(t)
 
 If successive windows are independent and Gaussian, the estimates of v(t) and v(2 t) have the
-correlation 2^((1 - n)/2), and the estimates of v(2 t) - v(t) at different t are independent. Those
-of growth(t) are not. The errors here are those.
+correlation 2^((1 - n)/2), and the estimates of v(2 t) - v(t) at different t are independent. The
+estimates of growth(t) are correlated (`correlations`). The errors here assume this.
 """
 
 from __future__ import annotations
