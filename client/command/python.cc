@@ -64,11 +64,15 @@ void SetEnvironment(const Options& options) {
   set("BALLPISTON_PROGRESS", WordOf(StyleOf(options), kProgressStyles));
 }
 
-// The command that runs the interpreter with these arguments. The interpreter inherits where it
-// finds modules: first in the package, and not in the working folder, which may have a random.py.
+// The command that runs the interpreter with these arguments. The interpreter inherits two
+// variables: it looks for modules in this package first, and never in the working folder, which may
+// have a random.py.
 std::vector<std::string> PythonCommand(const std::vector<std::string>& arguments) {
-  static const int kOnce [[maybe_unused]] =
-      setenv("PYTHONPATH", PythonPath().c_str(), 1) + setenv("PYTHONSAFEPATH", "1", 1);
+  static const bool kIsSet [[maybe_unused]] = [] {
+    setenv("PYTHONPATH", PythonPath().c_str(), 1);
+    setenv("PYTHONSAFEPATH", "1", 1);
+    return true;
+  }();
   std::vector<std::string> command = {Interpreter()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return command;

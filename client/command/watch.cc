@@ -45,7 +45,7 @@ VerbResult WatchSeveral(const Connection& connection, const std::vector<std::str
   std::stop_source enough;
   const auto watch = [&](const std::string& name) {
     Ended job;
-    do {  // as long as the server has too many streams
+    do {  // again while the server has too many streams
       job = connection.client.Watch(name, {}, {}, enough.get_token());
     } while (ErrorReason(job.status()) == "TOO_MANY_STREAMS" && !enough.stop_requested());
     const std::lock_guard lock(mutex);

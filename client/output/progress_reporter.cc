@@ -32,7 +32,7 @@ ProgressStyle Resolved(ProgressStyle style) {
   return HasTerminal() ? ProgressStyle::kBar : ProgressStyle::kNone;
 }
 
-// Of a clock that nobody sets and that does not run while the machine sleeps.
+// The time of a clock that cannot be set. The clock stops while the machine sleeps.
 absl::Time Now() {
   return absl::UnixEpoch() + absl::FromChrono(std::chrono::steady_clock::now().time_since_epoch());
 }

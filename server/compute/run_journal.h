@@ -41,9 +41,9 @@ class RunJournal {
   // The run's first turn begins.
   virtual void Began() = 0;
 
-  // What an earlier process stored of an unfinished point, or an earlier job of the same point. May
-  // wait. UNAVAILABLE: the disk could not be read; the call has waited, and can be repeated at
-  // once.
+  // Returns what an earlier process stored of an unfinished point, or what an earlier job stored of
+  // the same point. UNAVAILABLE if the disk cannot be read; this call has then waited, and the
+  // caller can repeat it at once.
   virtual absl::StatusOr<StoredPoint> ReadPoint(size_t point) = 0;
 
   // The scheduler holds its lock during this call and the next three, so they must be quick, must
