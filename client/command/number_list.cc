@@ -51,14 +51,17 @@ struct Range {
   int64_t count;
   bool logarithmic;
 
-  // Rounds to 15 digits, so that 0.01:0.49:49 gives the doubles nearest to its decimal fractions.
+  // Rounds to 15 digits, so that 0.01:0.49:49 gives the doubles nearest to its decimal fractions. A
+  // logarithmic range has 12, because C libraries differ in the last bits of a power, and another
+  // bit would be another question.
   double At(int64_t i) const {
     const auto steps = static_cast<double>(count - 1);
     const auto step = static_cast<double>(i);
     if (i == 0) return from;
     if (i == count - 1) return to;
-    if (logarithmic) return from * std::pow(to / from, step / steps);
-    return *ToNumber(absl::StrFormat("%.15g", ((steps - step) * from + step * to) / steps));
+    return *ToNumber(logarithmic
+                         ? absl::StrFormat("%.12g", from * std::pow(to / from, step / steps))
+                         : absl::StrFormat("%.15g", ((steps - step) * from + step * to) / steps));
   }
 };
 
@@ -93,13 +96,10 @@ absl::StatusOr<Range> ParseRange(absl::string_view text) {
   return Range{*from, *to, *count, logarithmic};
 }
 
-// The inner numbers of a logarithmic range have rounding errors.
 std::string ChainText(double number) {
-  constexpr double kRelativeRounding = 1e-12;
-  const double whole = std::round(number);
-  const bool is_whole = std::abs(number - whole) <= kRelativeRounding * std::abs(number);
-  return is_whole && std::abs(whole) < kExactBelow ? absl::StrCat(static_cast<int64_t>(whole))
-                                                   : absl::StrFormat("%.17g", number);
+  return IsWhole(number) && std::abs(number) < kExactBelow
+             ? absl::StrCat(static_cast<int64_t>(number))
+             : absl::StrFormat("%.17g", number);
 }
 
 // A single number is a range with COUNT 1.

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "server/convert/errors.h"

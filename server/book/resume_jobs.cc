@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "core/engine_version.h"
 #include "server/book/acceptance.h"
 #include "server/book/active_jobs.h"
 #include "server/convert/errors.h"

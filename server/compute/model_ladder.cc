@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "absl/strings/str_cat.h"
+#include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/all_experiments.h"
 #include "core/markov/relaxation_spectrum.h"

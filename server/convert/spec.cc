@@ -9,7 +9,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
-#include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/model_choice/ladder.h"
 #include "google/protobuf/descriptor.h"
@@ -226,6 +225,9 @@ void Normalize(v1::EnsembleSpec& message) {
   DropSignsOfZeros(message);
   // The order of the names means nothing.
   if (message.grid().table_size() > 1) std::ranges::sort(*message.mutable_grid()->mutable_table());
+  for (std::string& cells : *message.mutable_grid()->mutable_cells()) {  // 03x2 is 3x2
+    if (const auto shape = ParseGasShape(cells); shape.ok()) cells = Text(*shape);
+  }
   const ExperimentKind* const experiment =
       FindExperiment(static_cast<uint64_t>(message.experiment()));
   if (experiment == nullptr) return;
@@ -287,7 +289,5 @@ std::string QuestionBytes(v1::EnsembleSpec message) {
   if (target.ByteSizeLong() == 0) message.clear_target();
   return DeterministicBytes(message);
 }
-
-std::string EngineVersion() { return std::string(kEngineVersion); }
 
 }  // namespace ballpiston::server

@@ -39,7 +39,4 @@ v1::EnsembleSpec::Model ModelMessage(Model model);
 // The same bytes for the same question: default values are left out.
 std::string QuestionBytes(v1::EnsembleSpec message);
 
-// The version of this program's engine.
-std::string EngineVersion();
-
 }  // namespace ballpiston::server

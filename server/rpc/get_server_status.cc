@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/time/clock.h"
+#include "core/engine_version.h"
 #include "server/convert/spec.h"
 #include "server/convert/timestamp.h"
 #include "server/rpc/methods.h"

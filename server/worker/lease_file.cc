@@ -125,7 +125,7 @@ storage::Lease LeaseRecord(const Lease& lease, const std::string& server, double
   record.set_server(server);
   record.set_job(lease.run);
   record.set_generation(lease.generation);
-  record.set_engine_version(kEngineVersion);
+  record.set_engine_version(EngineVersion());
   record.set_point(lease.point);
   record.set_touch_seconds(touch_seconds);
   const PointExperiment& experiment = *lease.experiment;
@@ -140,10 +140,10 @@ storage::Lease LeaseRecord(const Lease& lease, const std::string& server, double
 }
 
 absl::StatusOr<LeaseFile> LeaseOfRecord(const storage::Lease& record) {
-  if (record.engine_version() != kEngineVersion) {
+  if (record.engine_version() != EngineVersion()) {
     return absl::UnimplementedError(
         absl::StrCat("a lease is for engine version ", record.engine_version(),
-                     "; this program has engine version ", kEngineVersion));
+                     "; this program has engine version ", EngineVersion()));
   }
   std::optional<EnsembleSpec> spec = SpecOf(record.question());
   if (!spec) return absl::DataLossError("this engine cannot answer the question of a lease");

@@ -182,7 +182,7 @@ void AddFlags(CLI::App& app, CommandLine& line) {
                  "stop retrying one operation on a lease after this time")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.set_version_flag("--version", std::string(kEngineVersion), "print the engine version");
+  app.set_version_flag("--version", EngineVersion(), "print the engine version");
 }
 
 int Main(int argc, char** argv) {

@@ -102,7 +102,7 @@ TEST(Spec, ATooLongListOfShapesIsNotParsed) {
 
 // ---- defaults and names ----
 
-TEST(Spec, EmptyListsGetDefaultValuesAndZerosLoseTheirSigns) {
+TEST(Spec, EmptyListsGetDefaultValuesAndNumbersHaveOneForm) {
   const auto with_defaults = [](const std::string& text) {
     v1::EnsembleSpec spec = SpecOfText(text);
     Normalize(spec);
@@ -115,6 +115,8 @@ TEST(Spec, EmptyListsGetDefaultValuesAndZerosLoseTheirSigns) {
   const std::string zeros = "target { tolerance: 0 } grid { rho: 0.53 epsilon: [0, 0.1] hot: 0 }";
   EXPECT_EQ(with_defaults(absl::StrReplaceAll(zeros, {{" 0 ", " -0.0 "}, {"[0", "[-0.0"}})),
             SpecOfText(zeros).ShortDebugString());
+  EXPECT_EQ(with_defaults(R"(grid { cells: ["03", "3x02", "x"] })"),
+            SpecOfText(R"(grid { cells: ["3", "3x2", "x"] })").ShortDebugString());
 }
 
 // Each experiment with every model that answers it, and no other.

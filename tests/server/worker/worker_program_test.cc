@@ -150,10 +150,20 @@ TEST_F(WorkerProgramTest, WaitsBetweenItsLastAttempts) {
 TEST(WorkerProgram, PrintsItsEngineVersion) {
   const ProcessResult result = RunProgram({.command = {WorkerProgram(), "--version"}});
   EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_EQ(result.out, absl::StrCat(kEngineVersion, "\n"));
+  EXPECT_EQ(result.out, absl::StrCat(EngineVersion(), "\n"));
 }
 
 #ifdef BALLPISTON_STATIC_WORKER
+#ifdef __x86_64__
+// Its bits are others, so its engine is another one.
+TEST(WorkerProgram, HasAnotherEngineWithoutFusedMultiplyAdd) {
+  const ProcessResult result =
+      RunProgram({.command = {"env", "GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2", WorkerProgram(),
+                              "--version"}});
+  EXPECT_EQ(result.out, absl::StrCat(kEngineVersion, "-unfused\n")) << result.err;
+}
+#endif
+
 TEST(WorkerProgram, RunsInAnEmptyFolderSystem) {
   const TemporaryFolder root;
   std::filesystem::copy_file(WorkerProgram(), root.File("ballpiston-worker"));
@@ -161,7 +171,7 @@ TEST(WorkerProgram, RunsInAnEmptyFolderSystem) {
       RunProgram({.command = {"/usr/sbin/chroot", root.path(), "/ballpiston-worker", "--version"}});
   if (result.exit_code == 125) GTEST_SKIP() << "chroot is not permitted";
   EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_EQ(result.out, absl::StrCat(kEngineVersion, "\n"));
+  EXPECT_EQ(result.out, absl::StrCat(EngineVersion(), "\n"));
 }
 #endif
 
