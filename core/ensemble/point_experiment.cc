@@ -118,7 +118,9 @@ double RelativeError(const Estimate& estimate) {
 // temperatures, has a small relative error. So a tolerance is not judged with few samples.
 bool PointExperiment::ReachesTolerance(const BlockResult& merged) const {
   constexpr double kLeastShare = 0.25;
-  return tolerance_ && static_cast<double>(merged.samples) >= kLeastShare * expected_samples_ &&
+  const double measured =
+      static_cast<double>(merged.samples) - static_cast<double>(plan_.warm_up());
+  return tolerance_ && measured >= kLeastShare * expected_samples_ &&
          RelativeError(FirstEstimate(merged)) <= *tolerance_;
 }
 

@@ -91,7 +91,7 @@ class PointExperiment {
   PointSummary Summarize(const BlockResult& merged) const;
 
   // Whether `merged`, the complete chunks, reaches the tolerance; false if there is no tolerance,
-  // or if `merged` has fewer than a quarter of the samples that it is expected to need.
+  // or if fewer than a quarter of the samples that it is expected to need are measured.
   bool ReachesTolerance(const BlockResult& merged) const;
 
   const std::optional<double>& tolerance() const { return tolerance_; }

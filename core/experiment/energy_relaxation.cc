@@ -183,13 +183,16 @@ std::vector<std::vector<double>> EnergyRelaxation::ProbabilitiesOfLimit() const 
   return probabilities;
 }
 
+// The first point of a mean energy is the energy that was asked for, without the spectrum's
+// rounding.
 Curve EnergyRelaxation::CurveOfLimit() const {
   const RelaxationSpectrum& spectrum = RelaxationSpectrum::Get();
   Curve curve = {.name = epsilon_ ? "mean_energy" : "energy_autocorrelation"};
   for (size_t i = 0; i < kLags; ++i) {
     const double time = Lag(i) / unit_of_limit_;
-    const auto [limit, error] =
-        epsilon_ ? spectrum.MeanEnergy(*epsilon_, time) : spectrum.Autocorrelation(time);
+    const auto [limit, error] = !epsilon_ ? spectrum.Autocorrelation(time)
+                                : i == 0  ? BoundedValue{*epsilon_, 0}
+                                          : spectrum.MeanEnergy(*epsilon_, time);
     curve.points.push_back({.at = Lag(i), .value = limit, .standard_error = error, .limit = limit});
   }
   return curve;

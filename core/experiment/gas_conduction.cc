@@ -91,8 +91,7 @@ double WarmUpOfTheCold(Model model, double cold) {
 // The number of relaxation times that a large gas warms up. The start is almost stationary: after
 // one relaxation time the mean temperatures deviate by up to 0.3 %. If all trajectories together
 // have many balls (`balls`), their statistical error is as small. With kFewBalls the deviation is a
-// third of the error. TimesOfConduction rounds the number down to a power of two, so the deviation
-// can be almost as large as the error.
+// third of the error.
 double WarmUpOfTheMany(double balls) {
   constexpr double kFewBalls = 3600;
   return 1 + std::ceil(std::log(std::max(balls / kFewBalls, 1.0)) / 2);
@@ -133,7 +132,10 @@ SteadyTimes TimesOfConduction(Model model, const GasGeometry& geometry, double c
   const double balls =
       static_cast<double>(trajectories.count()) * static_cast<double>(geometry.balls());
   const double factor = std::max(WarmUpOfTheCold(model, cold), WarmUpOfTheMany(balls));
-  trajectories.warm_up = kWarmUp * std::bit_floor(static_cast<uint64_t>(factor)) * times.stretches;
+  const auto relaxation_times = static_cast<uint64_t>(std::ceil(factor));
+  // Rounded up to a power of two: beside a cold reservoir a shorter warm-up leaves a deviation as
+  // large as the error of many balls.
+  trajectories.warm_up = kWarmUp * std::bit_ceil(relaxation_times) * times.stretches;
   return times;
 }
 

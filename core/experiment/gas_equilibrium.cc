@@ -427,7 +427,7 @@ Scatter ScatterOfConductivity(Model model, const PointParameters& point) {
 // gas of this shape in the limit. The values are bounds of measured differences
 // (docs/research/conductivity.md). In one column no correlation lowers the conductivity.
 double ErrorOfSize(const GasGeometry& geometry) {
-  constexpr double kOfColumns[] = {0.00182, 5e-4, 2e-4, 7e-5};
+  constexpr double kOfColumns[] = {0.00182, 5e-4, 2e-4, 7e-5, 4e-5, 2e-5};
   constexpr double kOfRows[] = {2.6e-4, 4e-5};
   constexpr double kOfMore = 1e-5;
   const auto in = [](std::span<const double> errors, int64_t count) {

@@ -73,6 +73,11 @@ std::string RangeOfDeltaIn(const BilliardDomain& domain) {
   return absl::StrCat("delta >= ", NumberText(domain.min_delta));
 }
 
+std::string RangeOfEpsilonIn(const BilliardDomain& domain) {
+  if (domain.min_epsilon == 0) return "epsilon >= 0";
+  return absl::StrCat("epsilon = 0 or epsilon >= ", NumberText(domain.min_epsilon));
+}
+
 }  // namespace
 
 PairGeometry GeometryOf(const PointParameters& point) {
@@ -80,7 +85,9 @@ PairGeometry GeometryOf(const PointParameters& point) {
 }
 
 bool IsSoundForBilliard(const EnsembleSpec& spec, const PointParameters& point) {
-  return DomainOf(spec).Has(point[kRho], point[kDelta]);
+  const BilliardDomain& domain = DomainOf(spec);
+  return domain.HasRho(point[kRho]) && domain.HasDelta(point[kDelta]) &&
+         domain.HasEpsilon(point.Find(kEpsilon).value_or(0));
 }
 
 void CheckBilliardDomain(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
@@ -96,13 +103,15 @@ void CheckBilliardDomain(const EnsembleSpec& spec, std::vector<FieldViolation>& 
                      absl::StrCat(name, " is ", NumberText(value), "; ", PermittedWith(spec),
                                   permitted, OtherModels(spec))});
   };
-  const std::vector<double>&radii = spec.grid[kRho], &deltas = spec.grid[kDelta];
-  for (size_t i = 0; i < radii.size(); ++i) {
-    if (!domain.HasRho(radii[i])) refuse("rho", i, radii[i], RangeOfRhoIn);
-  }
-  for (size_t i = 0; i < deltas.size(); ++i) {
-    if (!domain.HasDelta(deltas[i])) refuse("delta", i, deltas[i], RangeOfDeltaIn);
-  }
+  const auto check = [&](const Parameter& parameter, const auto& has, const auto& range_in) {
+    const std::vector<double>& values = spec.grid[parameter];
+    for (size_t i = 0; i < values.size(); ++i) {
+      if (!(domain.*has)(values[i])) refuse(parameter.name, i, values[i], range_in);
+    }
+  };
+  check(kRho, &BilliardDomain::HasRho, RangeOfRhoIn);
+  check(kDelta, &BilliardDomain::HasDelta, RangeOfDeltaIn);
+  check(kEpsilon, &BilliardDomain::HasEpsilon, RangeOfEpsilonIn);
 }
 
 // The largest rho has the smallest bound, and the smallest rho has the longest times, so it

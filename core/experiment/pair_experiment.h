@@ -44,9 +44,9 @@ void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldVi
 // (billiard/billiard_domain.h).
 bool IsSoundForBilliard(const EnsembleSpec& spec, const PointParameters& point);
 
-// Finds rho and delta outside of the billiard's domain, in the spec's precision, if the spec names
-// a billiard or single precision. Where AUTO chooses, AnswerViolations (model_choice/ladder.h)
-// finds them. For pairs and for gases.
+// Finds rho, delta and epsilon outside of the billiard's domain, in the spec's precision, if the
+// spec names a billiard or single precision. Where AUTO chooses, AnswerViolations
+// (model_choice/ladder.h) finds them. For pairs and for gases.
 void CheckBilliardDomain(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
 
 // CheckDeltas with the bound of a pair, and CheckBilliardDomain.

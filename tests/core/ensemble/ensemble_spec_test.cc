@@ -241,6 +241,8 @@ TEST(EnsembleSpec, SinglePrecisionIsRejectedOutsideItsMeasuredDomain) {
     spec.precision = Precision::kDouble;
     EXPECT_THAT(Violations(spec), IsEmpty());
   }
+  ExpectViolations({{"first-hit epsilon=0,0.9e-12,1e-12 precision=single",
+                     {"grid.epsilon[1]: epsilon = 0 or epsilon >= 1e-12"}}});
 }
 
 // The largest rho decides, and the pair's bound is larger.

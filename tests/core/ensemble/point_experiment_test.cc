@@ -141,7 +141,8 @@ TEST_P(EachExperiment, AToleranceIsReachedWhenTheErrorIsWithinItButNotByFewSampl
     EXPECT_EQ(point->ReachesTolerance(merged), share > 1);
     BlockResult few = merged;
     const Scatter scatter = ScatterOf(spec_, point->parameters());
-    few.samples = static_cast<uint64_t>(scatter.SamplesFor(share * error) / 4);
+    few.samples =
+        point->plan().warm_up() + static_cast<uint64_t>(scatter.SamplesFor(share * error) / 4);
     EXPECT_FALSE(point->ReachesTolerance(few));
   }
 }

@@ -225,7 +225,7 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
   const PointParameters short_gas = PointAt(SpecBetween(3, 1), 0);
   EXPECT_EQ(kGasConduction.forecast(Model::kBilliard, short_gas).trajectories->warm_up, 2u);
   EXPECT_NEAR(of_length(19) / of_length(9), 4, 1e-12);
-  EXPECT_NEAR(of_length(12'000) / of_length(299), std::pow(12'001. / 300, 2), 1e-8);
+  EXPECT_NEAR(of_length(1'600) / of_length(299), std::pow(1'601. / 300, 2), 1e-8);
   const auto at_cold = [](Model model, double cold) {
     return ExchangesOfAWarmUp(SpecBetween(1, cold, {.columns = 1}, model));
   };
@@ -242,6 +242,8 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
   EXPECT_NEAR(at_cold(Model::kMarkov, 1e-10) / at_cold(Model::kMarkov, 0.01), 1, 1e-12);
 }
 
+// In 80 first answers of 1x225 cells of the billiard between 1 and 0.15, after one relaxation time,
+// the mean z-score of the pistons' temperature was 0.9 +- 0.1.
 TEST(GasConduction, BesideAColdReservoirABilliardWarmsUpLonger) {
   const auto halves = [](Model model, double cold) {
     return kGasConduction.forecast(model, PointAt(SpecBetween(1, cold), 0)).trajectories->warm_up;
@@ -249,8 +251,9 @@ TEST(GasConduction, BesideAColdReservoirABilliardWarmsUpLonger) {
   for (const Model model : kModelsThatSampleGases) {
     const bool is_billiard = model != Model::kMarkov;
     EXPECT_EQ(halves(model, 1), 2u);
-    EXPECT_EQ(halves(model, 0.3), 2u);
-    EXPECT_EQ(halves(model, 0.1), is_billiard ? 4u : 2u);
+    EXPECT_EQ(halves(model, 0.34), 2u);
+    EXPECT_EQ(halves(model, 0.15), is_billiard ? 4u : 2u);
+    EXPECT_EQ(halves(model, 0.14), is_billiard ? 8u : 2u);
     EXPECT_EQ(halves(model, 0.01), is_billiard ? 16u : 2u);
     EXPECT_EQ(halves(model, 1e-8), is_billiard ? 16u : 2u);
   }
@@ -278,8 +281,10 @@ TEST(GasConduction, ALargeGasWarmsUpLonger) {
   };
   EXPECT_EQ(halves(225), 2u);
   EXPECT_EQ(halves(226), 4u);
-  EXPECT_EQ(halves(12'000), 4u);
-  EXPECT_EQ(halves(13'000), 8u);
+  EXPECT_EQ(halves(1'662), 4u);
+  EXPECT_EQ(halves(1'663), 8u);
+  EXPECT_EQ(halves(90'771), 8u);
+  EXPECT_EQ(halves(90'772), 16u);
 }
 
 // The rate of exchanges in long runs is 0.06340(1). After a warm-up of one relaxation time it was
