@@ -3,6 +3,6 @@
 
 namespace ballpiston {
 
-inline constexpr char kEngineVersion[] = "0.23.0";
+inline constexpr char kEngineVersion[] = "0.24.0";
 
 }  // namespace ballpiston
