@@ -70,8 +70,6 @@ ask 'mean hit time at delta = 0.05 to 0.3 %' \
   first-hit --delta 0.05 --epsilon 0.25 --exponent 5 --tolerance 0.003
 ask 'relaxation time at delta = 0.2 to 0.5 %' energy-relaxation --delta 0.2 --tolerance 0.005
 ask 'relaxation time at delta = 0.0125 to 1 %' energy-relaxation --delta 0.0125 --tolerance 0.01
-ask 'the same at delta = 0.005: the pilot is known' \
-  energy-relaxation --delta 0.005 --tolerance 0.01
 ask 'relaxation time at delta = 0.05 in 3 s' energy-relaxation --delta 0.05 --budget 3
 ask 'decay from epsilon = 0.4 at delta = 0.1 to 1 %' \
   energy-relaxation --delta 0.1 --epsilon 0.4 --tolerance 0.01

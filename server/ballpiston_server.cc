@@ -161,7 +161,7 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       door_(std::move(door)),
       store_(std::move(store)),
       crashes_(std::make_shared<CrashRecord>(directory_.path())),
-      ladder_(*store_, options_.workers, OptionsOfScheduler(options_).memory_limit),
+      ladder_(options_.workers, OptionsOfScheduler(options_).memory_limit),
       scheduler_(options_.opener ? *options_.opener : static_cast<PointOpener&>(ladder_),
                  options_.workers, OptionsOfScheduler(options_)),
       book_(*store_, options_.limits, scheduler_, crashes_),

@@ -23,8 +23,7 @@ EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point
                       .seed = spec.seed,
                       .model = model,
                       .precision = spec.precision,
-                      .verify = spec.verify,
-                      .purpose = spec.purpose};  // a copy of the grid would be large
+                      .verify = spec.verify};  // a copy of the grid would be large
   for (const Parameter* parameter : kParameters) {
     if (const auto& value = point.Find(*parameter)) one.grid[*parameter] = {*value};
   }

@@ -38,10 +38,6 @@ struct Target {
   bool IsOpenEnded() const { return tolerance || budget_seconds; }
 };
 
-// The use of the random numbers. A pilot and the job for which it runs have different random
-// numbers.
-enum class Purpose { kAnswer, kPilot };
-
 struct EnsembleSpec {
   const ExperimentKind* experiment = nullptr;
   Grid grid = {};  // lists that the experiment needs have values; all others are empty
@@ -50,7 +46,6 @@ struct EnsembleSpec {
   Model model = Model::kAuto;
   Precision precision = Precision::kDouble;
   bool verify = false;  // if true, AUTO does not choose the closed form
-  Purpose purpose = Purpose::kAnswer;
 };
 
 struct FieldViolation {

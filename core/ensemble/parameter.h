@@ -62,7 +62,7 @@ class PointParameters {
     values_[parameter.index] = value;
   }
 
-  friend auto operator<=>(const PointParameters&, const PointParameters&) = default;
+  friend bool operator==(const PointParameters&, const PointParameters&) = default;
 
  private:
   std::array<std::optional<double>, kParameters.size()> values_ = {};

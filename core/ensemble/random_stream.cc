@@ -18,10 +18,9 @@ uint64_t Absorb(uint64_t hash, uint64_t word) { return Mix(hash + 0x9e3779b97f4a
 
 // Both billiard models use the same random numbers, so that their results can be compared by eye.
 // The jump process has its own random numbers, because statistics compare it with the billiard.
-enum class Stream : uint64_t { kBilliard, kJumpProcess, kPilot };
+enum class Stream : uint64_t { kBilliard, kJumpProcess };
 
 Stream StreamOf(const EnsembleSpec& spec) {
-  if (spec.purpose == Purpose::kPilot) return Stream::kPilot;
   return spec.model == Model::kMarkov ? Stream::kJumpProcess : Stream::kBilliard;
 }
 

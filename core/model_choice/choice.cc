@@ -4,7 +4,6 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
-#include "core/experiment/all_experiments.h"
 #include "core/model_choice/ladder.h"
 #include "core/model_choice/question.h"
 
@@ -13,37 +12,10 @@ namespace {
 
 constexpr absl::string_view kInSinglePrecision = "in single precision; ";
 
-// The costs of a pilot and of the billiard itself, in wall hits. They are not in seconds, so that
-// every machine makes the same choice.
-double HitsOf(const PointParameters& point, double orbits) {
-  constexpr double kHitsThatACollisionCosts = 100;
-  const SampleWork work = kEnergyRelaxation.forecast(Model::kBilliard, point).work;
-  return orbits * (work.ball_wall + kHitsThatACollisionCosts * work.collisions);
-}
-
-// A few hours of a core. Where the discs nearly touch, a pilot may take longer than any machine
-// lasts.
-constexpr double kMostHitsOfAPilot = 1e13;
-
 // The billiard as the answer; `why` is the reason that no cheaper model answers.
 Answer Billiard(const Question& question, absl::string_view why) {
   const std::optional<double> error = question.ModelErrorOf(Model::kBilliard);
   return {Model::kBilliard, absl::StrCat(error == 0 ? "exact; " : kInSinglePrecision, why), error};
-}
-
-// The reason why no pilot is needed; empty if a pilot is needed.
-std::string WithoutAPilot(const Question& question, const PilotPlace& place) {
-  const double tolerance = *question.target().tolerance;
-  const Pilot predicted = PredictedPilot(place);
-  const Pilot at_best = {.difference = 0, .standard_error = predicted.standard_error};
-  if (LimitErrorBound(at_best, place, question.point()) > tolerance) {
-    return "a pilot could not establish the limit's error to this tolerance";
-  }
-  const double samples = question.ScatterBy(Model::kBilliard).SamplesFor(tolerance);
-  if (HitsOf(question.point(), samples) < HitsOf(place, kPilotOrbits)) {
-    return "the billiard reaches the tolerance before a pilot would establish the limit's error";
-  }
-  return "";
 }
 
 Answer ByItsBound(const Question& question, double error) {
@@ -56,29 +28,7 @@ Answer ByItsBound(const Question& question, double error) {
   return {question.ModelOfLimit(), why, error};
 }
 
-std::optional<Answer> ByTolerance(const Question& question, double expected,
-                                  const PilotSource& pilots) {
-  if (!question.HasPilots() || !question.IsWithinTolerance(expected)) {
-    return ByItsBound(question, expected);
-  }
-  const PilotPlace place = PilotPlaceFor(question.point());
-  if (const std::string why = WithoutAPilot(question, place); !why.empty()) {
-    return Billiard(question, why);
-  }
-  if (HitsOf(place, kPilotOrbits) > kMostHitsOfAPilot) return ByItsBound(question, expected);
-  const std::optional<Pilot> pilot = pilots(place);
-  if (!pilot) return std::nullopt;
-  const double error = LimitErrorBound(*pilot, place, question.point());
-  const std::string found =
-      absl::StrCat("the limit's error is within ", Rounded(error), ", ", FoundBy(*pilot, place));
-  if (error > *question.target().tolerance) {
-    return Billiard(question, absl::StrCat(found, ": beyond the tolerance"));
-  }
-  return Answer{question.ModelOfLimit(), absl::StrCat(found, ": within the tolerance"), error};
-}
-
-// The model that has the smaller error within the budget; the limit if none has an error. Runs no
-// pilot, because a pilot would use part of the budget.
+// The model that has the smaller error within the budget; the limit if none has an error.
 Answer ByBudget(const Question& question, double bound) {
   if (!question.IsWithinTolerance(bound)) return ByItsBound(question, bound);
   const double limit = question.ErrorInBudget(question.ModelOfLimit()) + bound;
@@ -100,15 +50,14 @@ Answer ByBudget(const Question& question, double bound) {
   return {question.ModelOfLimit(), compared, bound};
 }
 
-// Outside of the billiard's domain the limit answers by its expected error, without a pilot, if a
-// tolerance permits it, or with a budget.
-std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSource& pilots) {
+// Outside of the billiard's domain the limit answers if a tolerance permits its error, or with a
+// budget.
+Answer AnswerNearTheLimit(const Question& question) {
   const std::optional<double> error = question.LimitError();
   if (!error) return Billiard(question, "the limit's error is not known at this point");
   if (!question.IsSoundForBilliard() && question.target().IsOpenEnded() &&
       question.IsWithinTolerance(*error)) {
-    return Answer{question.ModelOfLimit(), "the billiard is not sound at this rho and delta",
-                  *error};
+    return {question.ModelOfLimit(), "the billiard is not sound at this rho and delta", *error};
   }
   if (!question.HasRelativeError()) {
     return Billiard(question,
@@ -116,7 +65,7 @@ std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSo
                     "cannot be judged");
   }
   if (question.target().budget_seconds) return ByBudget(question, *error);
-  if (question.target().tolerance) return ByTolerance(question, *error, pilots);
+  if (question.target().tolerance) return ByItsBound(question, *error);
   return Billiard(question, "without a tolerance the limit's error cannot be judged");
 }
 
@@ -127,13 +76,13 @@ std::string NothingCheaper(const Question& question) {
   return absl::StrCat("the limit's error is not known for ", question.subject());
 }
 
-std::optional<Answer> AutoAnswer(const Question& question, const PilotSource& pilots) {
+Answer AutoAnswer(const Question& question) {
   const bool verify = question.spec().verify;
   if (question.aim().HasClosedForm()) {
-    if (!verify) return Answer{Model::kClosedForm, "exact at every delta, no sampling", 0.0};
+    if (!verify) return {Model::kClosedForm, "exact at every delta, no sampling", 0.0};
     return Billiard(question, "verify is set, so the closed form is not used");
   }
-  if (question.HasLimit()) return AnswerNearTheLimit(question, pilots);
+  if (question.HasLimit()) return AnswerNearTheLimit(question);
   return Billiard(question, NothingCheaper(question));
 }
 
@@ -156,13 +105,13 @@ double BudgetOfAPoint(const EnsembleSpec& spec, int workers) {
   return *spec.target.budget_seconds * workers / static_cast<double>(PointCount(spec));
 }
 
-std::optional<Answer> ChooseAnswer(const EnsembleSpec& spec, const PointParameters& point,
-                                   const Machine& machine, const PilotSource& pilots) {
+Answer ChooseAnswer(const EnsembleSpec& spec, const PointParameters& point,
+                    const Machine& machine) {
   const Question question(spec, point, machine);
-  std::optional<Answer> answer = spec.model == Model::kAuto
-                                     ? AutoAnswer(question, pilots)
-                                     : Answer{spec.model, "", question.ModelErrorOf(spec.model)};
-  if (answer) AddFurtherErrors(question, *answer);
+  Answer answer = spec.model == Model::kAuto
+                      ? AutoAnswer(question)
+                      : Answer{spec.model, "", question.ModelErrorOf(spec.model)};
+  AddFurtherErrors(question, answer);
   return answer;
 }
 

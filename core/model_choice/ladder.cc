@@ -33,28 +33,19 @@ void PredictSamples(const Question& question, const Machine& machine, Rung& rung
   if (std::isfinite(error)) rung.statistical_error = error;
 }
 
-// The limit's error comes from the pilot that the choice has used. Without a pilot it is the
-// expected error.
-void SetModelError(const Question& question, const std::optional<Pilot>& pilot, Rung& rung) {
+void SetModelError(const Question& question, Rung& rung) {
   rung.model_error = question.ModelErrorOf(rung.model);
   if (rung.model == Model::kClosedForm) {
     rung.reason = "exact at every delta";
   } else if (!IsOfTheLimit(rung.model)) {
     rung.reason = rung.model_error == 0 ? "exact" : "the billiard in single precision";
-  } else if (!rung.model_error) {
-    rung.reason = "the limit delta -> 0";
-  } else if (!pilot) {
-    rung.reason = "the limit delta -> 0; the model error is an expected upper bound";
   } else {
-    const PilotPlace place = PilotPlaceFor(question.point());
-    rung.model_error = LimitErrorBound(*pilot, place, question.point());
-    rung.reason = absl::StrCat("the limit delta -> 0; the model error is an upper bound, ",
-                               FoundBy(*pilot, place));
+    rung.reason = absl::StrCat("the limit delta -> 0",
+                               rung.model_error ? "; the model error is an upper bound" : "");
   }
 }
 
-Rung RungFor(Model model, const Question& question, const Machine& machine,
-             const std::optional<Pilot>& pilot) {
+Rung RungFor(Model model, const Question& question, const Machine& machine) {
   Rung rung;
   rung.model = model;
   if (!question.aim().IsAnsweredBy(model)) {
@@ -67,7 +58,7 @@ Rung RungFor(Model model, const Question& question, const Machine& machine,
     return rung;
   }
   rung.answers = true;
-  SetModelError(question, pilot, rung);
+  SetModelError(question, rung);
   if (TakesSamples(model)) {
     PredictSamples(question, machine, rung);
   } else {
@@ -78,35 +69,15 @@ Rung RungFor(Model model, const Question& question, const Machine& machine,
   return rung;
 }
 
-void AddPilot(const MachineRates& rates, Ladder& ladder) {
-  ladder.work_of_pilot = SecondsOfPilot(*ladder.pilot, rates);
-  Rung& chosen = *std::ranges::find(ladder.rungs, ladder.answer.model, &Rung::model);
-  chosen.work = chosen.work.value_or(0) + ladder.work_of_pilot;
-  chosen.time += ladder.work_of_pilot;
-  chosen.reason = absl::StrCat(chosen.reason, "; with the pilot");
-}
-
 }  // namespace
 
 const Rung& Ladder::Chosen() const { return *std::ranges::find(rungs, answer.model, &Rung::model); }
 
-Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine,
-                 const PilotSource& pilots) {
+Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine) {
   const Question question(spec, point, machine);
   Ladder ladder;
-  std::optional<Pilot> used;
-  ladder.answer = *ChooseAnswer(spec, point, machine, [&](const PilotPlace& place) {
-    used = pilots(place);
-    if (!used) {
-      ladder.pilot = place;
-      used = PredictedPilot(place);
-    }
-    return used;
-  });
-  for (const Model model : kLadder) {
-    ladder.rungs.push_back(RungFor(model, question, machine, used));
-  }
-  if (ladder.pilot) AddPilot(machine.rates, ladder);
+  ladder.answer = ChooseAnswer(spec, point, machine);
+  for (const Model model : kLadder) ladder.rungs.push_back(RungFor(model, question, machine));
   return ladder;
 }
 

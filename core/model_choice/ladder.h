@@ -1,21 +1,20 @@
 // The ladder of models: the models that can answer, their costs and errors, and the choice.
 //
 // Costs and errors refer to the estimate that the target names (experiment_kind.h: AimedEstimate).
-// AUTO chooses the cheapest model that is exact for this estimate, or whose error is known to be
-// within the tolerance (within half of it if the model samples). This is a closed form if there is
-// one, else the limit's cheapest model if its error permits, else the billiard. Without a tolerance
-// AUTO chooses only an exact model. With a budget alone AUTO chooses the model with the smallest
-// error that can be reached within the budget.
+// AUTO chooses the cheapest model that is exact for this estimate, or whose error has an upper
+// bound within the tolerance (within half of it if the model samples). This is a closed form if
+// there is one, else the limit's cheapest model if its bound permits (experiment_kind.h:
+// AimedEstimate::limit_error), else the billiard. Without a tolerance AUTO chooses only an exact
+// model. With a budget alone AUTO chooses the model with the smallest error that can be reached
+// within the budget.
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/ensemble/point_experiment.h"
-#include "core/model_choice/limit_error.h"
 #include "core/model_choice/machine_rates.h"
 
 namespace ballpiston {
@@ -27,14 +26,9 @@ struct Machine {
   double memory = std::numeric_limits<double>::infinity();  // bytes that questions may use
 };
 
-// Returns a known pilot; empty if the pilot has not run.
-using PilotSource = std::function<std::optional<Pilot>(const PilotPlace&)>;
-
 // The model that answers at a point; for AUTO the service's choice. Without a budget the choice
-// depends on the spec alone, not on the machine. Empty only if the choice needs a pilot that has
-// not run. The spec must have no violations.
-std::optional<Answer> ChooseAnswer(const EnsembleSpec& spec, const PointParameters& point,
-                                   const Machine& machine, const PilotSource& pilots);
+// depends on the spec alone, not on the machine. The spec must have no violations.
+Answer ChooseAnswer(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine);
 
 struct Rung {
   Model model = Model::kBilliard;
@@ -42,7 +36,7 @@ struct Rung {
   std::string reason;             // why it cannot answer, or the source of its error
   std::optional<double> samples;  // that the target requires
   std::optional<double> work;     // seconds of processor time
-  double time = 0;  // seconds by the clock, with the pilot, if all workers have only this point
+  double time = 0;                // seconds by the clock, if all workers have only this point
   std::optional<double> statistical_error;  // these two relative, of the first estimate
   std::optional<double> model_error;
   double memory = 0;  // bytes
@@ -51,17 +45,11 @@ struct Rung {
 struct Ladder {
   std::vector<Rung> rungs;  // cheapest first
   Answer answer;
-  // The pilot that one worker has to run before the choice, and its part of the chosen rung's work.
-  std::optional<PilotPlace> pilot;
-  double work_of_pilot = 0;
 
   const Rung& Chosen() const;
 };
 
-// `pilots` returns known pilots, and predictions of pilots that run for other points. If `pilots`
-// returns none, the ladder includes a pilot for this point and predicts its result.
-Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine,
-                 const PilotSource& pilots);
+Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine);
 
 // No machine computes longer for a point than this, in seconds at nominal speed.
 inline constexpr double kMostSeconds = 1e10;
@@ -71,8 +59,8 @@ inline constexpr double kMostSeconds = 1e10;
 //     choose the billiard at a point outside of it
 //   a tolerance that the model cannot reach: below the model's own error, or below the statistical
 //     error of the largest permitted number of samples, or where the estimate has no relative
-//     error. The limit's error counts for the spectrum, and for `markov` where pilots can check it;
-//     elsewhere the tolerance of `markov` is that of its samples
+//     error. The limit's error counts for the spectrum; the tolerance of `markov` is that of its
+//     samples
 //   a point that takes longer than kMostSeconds. A budget limits the time of each point
 std::vector<FieldViolation> AnswerViolations(const EnsembleSpec& spec);
 

@@ -13,7 +13,6 @@
 #include "core/billiard/billiard_domain.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
-#include "core/experiment/all_experiments.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/model_choice/ladder.h"
 #include "core/model_choice/sampling_cost.h"
@@ -33,11 +32,8 @@ class Question {
   const Target& target() const { return spec_.target; }
   const AimedEstimate& aim() const { return AimOf(spec_); }
   bool HasLimit() const { return aim().limit_error != nullptr; }
-  // The expected bound of the limit's error, if it is known.
+  // The upper bound of the limit's error, if it is known.
   std::optional<double> LimitError() const { return aim().LimitErrorAt(point_); }
-  // Whether pilots can check the bound. They are runs of energy-relaxation. In a gas a pilot would
-  // take as long as the billiard's answer.
-  bool HasPilots() const { return spec_.experiment == &kEnergyRelaxation; }
   bool IsSoundForBilliard() const { return ballpiston::IsSoundForBilliard(spec_, point_); }
   // The cheapest model that answers in the limit. Requires HasLimit.
   Model ModelOfLimit() const { return *std::ranges::find_if(aim().models, IsOfTheLimit); }
@@ -54,7 +50,7 @@ class Question {
     return is_default ? spec_.experiment->name : aim().name;
   }
 
-  // The model's error without the statistical error: the expected error of the limit, or the error
+  // The model's error without the statistical error: the bound of the limit's error, or the error
   // of the billiard's precision. Empty if the error is unknown, or if the first estimate has no
   // relative error.
   std::optional<double> ModelErrorOf(Model model) const {

@@ -30,7 +30,7 @@ std::string ParametersText(const PointParameters& point) {
   return text;
 }
 
-// The answer at a point, as far as it is expected without pilots.
+// The answer at a point.
 struct Expected {
   PointParameters point;
   Model model;
@@ -42,7 +42,7 @@ struct Expected {
 Expected ExpectedAt(const EnsembleSpec& spec, const PointParameters& point) {
   Expected expected = {point, Sampled(spec.model)};
   if (spec.model == Model::kAuto && (spec.target.tolerance || !IsSoundForBilliard(spec, point))) {
-    expected.model = ChooseAnswer(spec, point, Machine(), PredictedPilot)->model;
+    expected.model = ChooseAnswer(spec, point, Machine()).model;
   }
   if (spec.target.tolerance && expected.model != Model::kClosedForm) {
     expected.scatter = AimOf(spec).scatter(expected.model, point);
@@ -77,14 +77,13 @@ std::optional<FieldViolation> WithoutAnError(const EnsembleSpec& spec, const Exp
                                         ParametersText(point), reason)};
 }
 
-// The least tolerance that can be reached: the model's error, which counts for `markov` only where
-// pilots can check it, and at least the statistical error of the largest permitted number of
-// samples or the numerical error of a model without samples.
+// The least tolerance that can be reached: the model's error, which does not count for `markov`,
+// and at least the statistical error of the largest permitted number of samples or the numerical
+// error of a model without samples.
 double LeastTolerance(const EnsembleSpec& spec, const Expected& expected) {
   const auto& [point, model, scatter] = expected;
   const Question question(spec, point, Machine());
-  const bool is_checked = model != Model::kMarkov || question.HasPilots();
-  const double of_model = is_checked ? question.ModelErrorOf(model).value_or(0) : 0;
+  const double of_model = model == Model::kMarkov ? 0 : question.ModelErrorOf(model).value_or(0);
   const double of_samples = TakesSamples(model) ? scatter.ErrorOf(static_cast<double>(kMaxSamples))
                                                 : AimOf(spec).numerical_error(point);
   return std::isfinite(of_samples) ? std::max(of_model, of_samples) : of_model;

@@ -20,17 +20,16 @@ HeldLeases::Held& HeldLeases::Add(Lease lease) {
   return held_.emplace(key, Held{std::move(lease)}).first->second;
 }
 
-HeldLeases::Held* HeldLeases::FirstWithTurn(int64_t run, const std::optional<PilotPlace>& only) {
+HeldLeases::Held* HeldLeases::FirstWithTurn(int64_t run) {
   Held* first = nullptr;
   const auto end = held_.lower_bound(FirstOf(run, false));
   for (auto next = held_.lower_bound(FirstOf(run, true)); next != end; ++next) {
     Held& held = next->second;
     const Lease& lease = held.lease;
-    if (only && lease.pilot != only) continue;
     const bool has_memory = held.turns < held.most_turns ||
                             lease.memory.of_a_further_turn <= FreeMemory(IsLater(lease));
     if (lease.stop.stop_requested() || !has_memory) continue;
-    if (first != nullptr && !lease.GoesBefore(first->lease)) continue;
+    if (first != nullptr && lease.point >= first->lease.point) continue;
     if (lease.work->HasTurn()) first = &held;
   }
   return first;

@@ -33,10 +33,9 @@ class HeldLeases {
   // Gives the lease, which has chunks, its number.
   Held& Add(Lease lease);
 
-  // The lease that goes before the others (Lease::GoesBefore), among the run's local leases that
-  // have a turn, and for whose turn there is memory; with `only`, among those of this pilot. Null
-  // if there is none.
-  Held* FirstWithTurn(int64_t run, const std::optional<PilotPlace>& only = {});
+  // The lease whose point comes first, among the run's local leases that have a turn, and for whose
+  // turn there is memory. Null if there is none.
+  Held* FirstWithTurn(int64_t run);
 
   // A turn at the lease begins. Returns the lease.
   const Lease& BeginTurn(Held& held);

@@ -19,14 +19,12 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <stop_token>
 #include <vector>
 
 #include "core/ensemble/chunk_fold.h"
 #include "core/ensemble/ensemble_spec.h"
 #include "core/ensemble/point_experiment.h"
-#include "core/model_choice/limit_error.h"
 
 namespace ballpiston::server {
 
@@ -50,7 +48,6 @@ struct Lease {
   int64_t number = 0;  // greater than those before, in the scheduler's life
   int64_t run = 0;     // these two are RunRequest's key and generation
   int64_t generation = 0;
-  int64_t payer = 0;  // the run that is charged: the lease's, or one that waits for its pilot
   bool local = true;  // as of Capacity
   int attempt = 1;    // greater than 1 if an executor returned some of the chunks
   int crashes = 0;    // earlier attempts that died of themselves (Scheduler::ReturnCrashed)
@@ -58,8 +55,7 @@ struct Lease {
   std::shared_ptr<const EnsembleSpec> spec = {};  // of the run
   std::vector<size_t> opens = {};                 // points to open; empty: the lease has chunks
 
-  size_t point = 0;                      // of the run's grid
-  std::optional<PilotPlace> pilot = {};  // the chunks are of this pilot, for which the point waits
+  size_t point = 0;  // of the run's grid
   std::shared_ptr<const PointExperiment> experiment = {};
 
   PartialChunk start = {};  // the first chunk, and what is merged of it already
@@ -76,13 +72,6 @@ struct Lease {
   std::stop_token ending = {};
 
   bool OpensPoints() const { return !opens.empty(); }
-
-  // Both leases have chunks of the same run. A pilot goes before a point, and a point before the
-  // points after it in the grid.
-  bool GoesBefore(const Lease& other) const {
-    if (pilot.has_value() != other.pilot.has_value()) return pilot.has_value();
-    return point < other.point;
-  }
 };
 
 // What an executor computed of a lease.

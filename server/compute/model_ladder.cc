@@ -1,11 +1,7 @@
 #include "server/compute/model_ladder.h"
 
 #include <string>
-#include <utility>
-#include <variant>
 
-#include "absl/strings/str_cat.h"
-#include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/all_experiments.h"
 #include "core/markov/relaxation_spectrum.h"
@@ -13,7 +9,6 @@
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/processor_time.h"
-#include "server/status/log.h"
 #include "server/store/point_tables.h"
 
 namespace ballpiston::server {
@@ -23,9 +18,6 @@ namespace {
 constexpr double kAnyRho = 0.53, kAnyDelta = 0.1;
 
 }  // namespace
-
-ModelLadder::ModelLadder(Store& store, int workers, double memory)
-    : store_(store), workers_(workers), memory_(memory) {}
 
 const Machine& ModelLadder::machine() {
   std::call_once(measured_, [this] { Measure(); });
@@ -54,62 +46,23 @@ std::vector<FieldViolation> ModelLadder::ViolationsHere(const EnsembleSpec& spec
 
 void ModelLadder::Serve(const EnsembleSpec& spec) {
   ThreadSeconds();  // a worker reads the clock twice
-  const OpenedPoint opened = Open(spec, 0);
-  const auto& experiment = *std::get<std::unique_ptr<const PointExperiment>>(opened);
-  const PointSummary summary = experiment.Summarize(BlockResult());
-  const PointRow row = {.result = DeterministicBytes(ResultOf(0, experiment, summary)),
+  const auto experiment = Open(spec, 0);
+  const PointSummary summary = experiment->Summarize(BlockResult());
+  const PointRow row = {.result = DeterministicBytes(ResultOf(0, *experiment, summary)),
                         .details = DetailsBytes(DetailsOf(summary))};
   const auto told = std::make_shared<const std::string>(row.result);
   ThreadSeconds();
 }
 
-OpenedPoint ModelLadder::Open(const EnsembleSpec& spec, size_t index) {
-  std::optional<PilotPlace> needed;
-  const PilotSource pilots = [&](const PilotPlace& place) {
-    const std::optional<Pilot> known = Known(place);
-    if (!known) needed = place;
-    return known;
-  };
+std::unique_ptr<const PointExperiment> ModelLadder::Open(const EnsembleSpec& spec, size_t index) {
   // Only a choice with a budget needs the machine's own rates.
   const Machine unmeasured = Unmeasured();
   const Machine& rates = spec.target.budget_seconds ? machine() : unmeasured;
-  std::optional<Answer> answer = ChooseAnswer(spec, PointAt(spec, index), rates, pilots);
-  if (!answer) return *needed;
-  return PointExperiment::Create(spec, index, *std::move(answer));
+  return PointExperiment::Create(spec, index, ChooseAnswer(spec, PointAt(spec, index), rates));
 }
 
 double ModelLadder::MemoryOf(const EnsembleSpec& spec, size_t index, int threads) {
   return ballpiston::MemoryOf(spec, PointAt(spec, index), threads);
-}
-
-Ladder ModelLadder::LadderOf(const EnsembleSpec& spec, const PointParameters& point,
-                             const std::set<PilotPlace>& planned) {
-  return LadderFor(spec, point, machine(), [&](const PilotPlace& place) {
-    return planned.contains(place) ? PredictedPilot(place) : Known(place);
-  });
-}
-
-std::optional<Pilot> ModelLadder::Known(const PilotPlace& place) {
-  {
-    MutexLock lock(mutex_);
-    const auto found = pilots_.find(place);
-    if (found != pilots_.end()) return found->second;
-  }
-  const auto stored =
-      store_.Read([&](Database& database) { return FindPilot(database, EngineVersion(), place); });
-  if (!stored.ok()) {
-    LogError(absl::StrCat("a pilot's result cannot be read: ", stored.status().message()));
-  }
-  if (!stored.ok() || !*stored) return std::nullopt;
-  MutexLock lock(mutex_);
-  return pilots_.emplace(place, **stored).first->second;
-}
-
-void ModelLadder::KeepPilot(const PilotPlace& place, const Pilot& pilot) {
-  store_.Record(
-      [place, pilot](Database& database) { InsertPilot(database, EngineVersion(), place, pilot); });
-  MutexLock lock(mutex_);
-  pilots_.emplace(place, pilot);
 }
 
 }  // namespace ballpiston::server

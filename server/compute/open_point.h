@@ -1,4 +1,4 @@
-// A point whose chunks are being computed, or a pilot: which chunks are to be leased, and the fold.
+// A point whose chunks are being computed: which chunks are to be leased, and the fold.
 #pragma once
 
 #include <cstdint>

@@ -32,7 +32,7 @@ Run::Run(RunRequest request, SchedulerOptions options, int workers)
     std::set<size_t>& points = request_.suspicion->points;
     std::erase_if(points, [this](size_t point) { return point >= taken_.size() || taken_[point]; });
     for (const size_t point : points) taken_[point] = true;
-    reopen_ = points;
+    suspected_ = points;
   }
   SkipTakenPoints();
 }
@@ -52,34 +52,8 @@ std::optional<Lease> Run::NextLease(const Capacity& capacity) {
   }
   if (IsWantedElsewhere()) return NextOpening();
   awaited_memory_ = 0;
-  std::optional<Lease> lease = NextChunksOfPilot(capacity);
-  if (!lease) lease = NextChunks(capacity, taken_.size());
+  std::optional<Lease> lease = NextChunks(capacity, taken_.size());
   return lease || awaited_memory_ > 0 ? std::move(lease) : NextOpening();
-}
-
-std::optional<Lease> Run::NextLeaseBefore(const Lease& held, const Capacity& capacity) {
-  if (held.pilot) return std::nullopt;
-  std::optional<Lease> lease = NextChunksOfPilot(capacity);
-  return lease ? std::move(lease) : NextChunks(capacity, held.point);
-}
-
-std::optional<Lease> Run::NextChunksOfPilot(const Capacity& capacity,
-                                            const std::optional<PilotPlace>& only) {
-  if (only) awaited_memory_ = 0;
-  for (const auto& [place, pilot] : pilots_) {
-    if (only && place != *only) continue;
-    auto lease = pilot->NextChunks(capacity);
-    if (!lease) {
-      NoteAwaited(*pilot, capacity);
-      continue;
-    }
-    lease->pilot = place;
-    if (const auto waiting = waiting_.find(place); waiting != waiting_.end()) {
-      lease->point = waiting->second.front();
-    }
-    return Completed(*std::move(lease));
-  }
-  return std::nullopt;
 }
 
 std::optional<Lease> Run::NextChunks(const Capacity& capacity, size_t end) {
@@ -112,7 +86,7 @@ bool Run::IsHeldBack(size_t point) const {
 }
 
 Lease Run::Completed(Lease lease) const {
-  lease.run = lease.payer = request_.key;
+  lease.run = request_.key;
   lease.generation = request_.generation;
   lease.spec = spec_;
   return lease;
@@ -120,7 +94,7 @@ Lease Run::Completed(Lease lease) const {
 
 bool Run::IsLarge() const {
   if (sampled_points_ == 0 || spec_->target.budget_seconds) return false;
-  const auto unopened = static_cast<double>(taken_.size() - next_point_ + reopen_.size());
+  const auto unopened = static_cast<double>(taken_.size() - next_point_ + suspected_.size());
   double seconds = unopened * sampled_seconds_ / sampled_points_;
   for (const auto& [index, point] : open_) {
     if (seconds >= options_.least_seconds_elsewhere) break;
@@ -138,8 +112,8 @@ std::optional<Lease> Run::NextOpening() {
                       : IsWantedElsewhere()  ? kPointsForElsewhere
                                              : 1;
   Lease lease;
-  while (lease.opens.size() < most && !reopen_.empty()) {
-    lease.opens.push_back(reopen_.extract(reopen_.begin()).value());
+  while (lease.opens.size() < most && !suspected_.empty()) {
+    lease.opens.push_back(suspected_.extract(suspected_.begin()).value());
   }
   while (lease.opens.size() < most && next_point_ < taken_.size() && !IsHeldBack(next_point_)) {
     lease.opens.push_back(next_point_++);
@@ -162,54 +136,28 @@ void Run::PointOpened(size_t point, std::unique_ptr<OpenPoint> open) {
   leasable_.insert(point);
 }
 
-void Run::PointAwaits(size_t point, const PilotPlace& place) { waiting_[place].push_back(point); }
-
-void Run::PilotOpened(const PilotPlace& place, std::unique_ptr<OpenPoint> open) {
-  if (stopped_) open->RequestStop();
-  pilots_.emplace(place, std::move(open));
-}
-
-void Run::PilotIsKnown(const PilotPlace& place) {
-  const auto found = waiting_.find(place);
-  if (found == waiting_.end()) return;
-  reopen_.insert(found->second.begin(), found->second.end());
-  waiting_.erase(found);
-}
-
 bool Run::IsUnopened(size_t point) const {
   if (stopped_ || point >= taken_.size()) return false;
-  return reopen_.contains(point) || opening_.contains(point) ||
+  return suspected_.contains(point) || opening_.contains(point) ||
          (point >= next_point_ && !taken_[point]);
 }
 
-OpenPoint* Run::Find(const Lease& lease) const {
-  if (lease.pilot) {
-    const auto pilot = pilots_.find(*lease.pilot);
-    return pilot == pilots_.end() ? nullptr : pilot->second.get();
-  }
-  const auto open = open_.find(lease.point);
+OpenPoint* Run::Find(size_t point) const {
+  const auto open = open_.find(point);
   return open == open_.end() ? nullptr : open->second.get();
 }
 
-void Run::Close(const Lease& lease) {
-  if (lease.pilot) {
-    pilots_.erase(*lease.pilot);
-  } else {
-    NoteProgress(lease.point);
-    leasable_.erase(lease.point);
-    open_.erase(lease.point);
-  }
+void Run::Close(size_t point) {
+  NoteProgress(point);
+  leasable_.erase(point);
+  open_.erase(point);
 }
 
 void Run::Return(const Lease& lease, int attempt) {
-  if (OpenPoint* open = Find(lease)) {
+  if (OpenPoint* open = Find(lease.point)) {
     open->Return(lease.start.chunk, lease.end, attempt, lease.crashes);
-    HasChunks(lease);
+    leasable_.insert(lease.point);
   }
-}
-
-void Run::HasChunks(const Lease& lease) {
-  if (!lease.pilot && open_.contains(lease.point)) leasable_.insert(lease.point);
 }
 
 void Run::NoteProgress(size_t point) {
@@ -220,7 +168,7 @@ void Run::NoteProgress(size_t point) {
 
 bool Run::IsRefuted() const {
   const std::optional<Suspicion>& suspicion = request_.suspicion;
-  return suspicion && suspicion->points.empty() && has_progressed_ && waiting_.empty();
+  return suspicion && suspicion->points.empty() && has_progressed_;
 }
 
 // ---- reports ----
@@ -231,16 +179,15 @@ uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
   open.work += report.seconds;
   uint64_t samples = 0;
   const bool has_chunks = !report.chunks.empty();
-  if (has_chunks && !lease.pilot && lease.local) NoteProgress(lease.point);
-  has_progressed_ |= has_chunks && !lease.pilot;
+  if (has_chunks && lease.local) NoteProgress(lease.point);
+  has_progressed_ |= has_chunks;
   for (ChunkResult& chunk : report.chunks) {
     const bool is_early = fold.Needs(chunk.chunk) && chunk.chunk > fold.state().chunk;
-    if (is_early && !lease.pilot) journal().ChunkIsEarly(lease.point, open.model(), chunk);
+    if (is_early) journal().ChunkIsEarly(lease.point, open.model(), chunk);
     samples += fold.Add(std::move(chunk));
   }
   samples += fold.AddPartial(report.partial);
-  if (lease.pilot) return samples;
-  HasChunks(lease);
+  leasable_.insert(lease.point);
   if (samples > 0) {
     open.version = journal().Merged(
         {.point = lease.point, .samples = samples, .share_of_point = open.ShareOf(samples)});
@@ -322,14 +269,11 @@ void Run::Stop(absl::Status reason) {
   why_stopped_ = std::move(reason);
   stop_opening_.request_stop();
   for (const auto& [index, point] : open_) point->RequestStop();
-  for (const auto& [place, pilot] : pilots_) pilot->RequestStop();
 }
 
 bool Run::over() const {
   if (turns_ > 0) return false;
-  const bool nothing_left =
-      open_.empty() && pilots_.empty() && opening_.empty() && !HasPointsToOpen();
-  return stopped_ || nothing_left;
+  return stopped_ || (open_.empty() && opening_.empty() && !HasPointsToOpen());
 }
 
 absl::Status Run::outcome() const {

@@ -1,9 +1,8 @@
-// The state of one job during its computation: its open points, its pilots, and its next lease.
+// The state of one job during its computation: its open points, and its next lease.
 //
 // Points are opened in grid order, when no open point has a chunk left to lease, or ahead when an
 // executor elsewhere has no work. So a grid of 100,000 points takes only the memory of its open
-// points. A point that waits for a pilot takes a few bytes. Not thread-safe: the scheduler's lock
-// guards it.
+// points. Not thread-safe: the scheduler's lock guards it.
 #pragma once
 
 #include <cstddef>
@@ -82,14 +81,8 @@ class Run {
 
   // A new lease for an executor; empty if there is none now.
   std::optional<Lease> NextLease(const Capacity& capacity);
-  // A new lease that goes before `held` (Lease::GoesBefore); empty if there is none.
-  std::optional<Lease> NextLeaseBefore(const Lease& held, const Capacity& capacity);
-
-  // A new lease of a pilot that the run owns; with `only`, of this one. Empty if there is none.
-  std::optional<Lease> NextChunksOfPilot(const Capacity& capacity,
-                                         const std::optional<PilotPlace>& only = {});
-  // The pilots for which points wait, with these points.
-  const std::map<PilotPlace, std::vector<size_t>>& waiting() const { return waiting_; }
+  // A new lease that has chunks of a point whose index is less than `end`; empty if there is none.
+  std::optional<Lease> NextChunks(const Capacity& capacity, size_t end);
 
   // Whether executors that are not local wait for points that nobody has opened: the next lease of
   // a local executor opens points.
@@ -104,25 +97,21 @@ class Run {
   void TurnEnds() { --turns_; }
   bool HasTurns() const { return turns_ > 0; }
 
-  // A lease to open points reports for each of its points that it is open or finished (with
-  // NoteProgress), or that it waits for a pilot.
+  // A lease to open points reports for each of its points that it is open, or finished (with
+  // NoteProgress).
   void PointOpened(size_t point, std::unique_ptr<OpenPoint> open);
-  void PointAwaits(size_t point, const PilotPlace& place);
-  void PilotOpened(const PilotPlace& place, std::unique_ptr<OpenPoint> open);
-  // The points that wait for this pilot are to be opened again.
-  void PilotIsKnown(const PilotPlace& place);
 
-  // Whether the point is still to be opened, is being opened, or waits for a pilot.
+  // Whether the point is still to be opened, or is being opened.
   bool IsUnopened(size_t point) const;
 
   // Chunks of the lease that are still needed go out again, as this attempt.
   void Return(const Lease& lease, int attempt);
 
-  // Null if the lease's point or pilot is not open (any more).
-  OpenPoint* Find(const Lease& lease) const;
-  void Close(const Lease& lease);
+  // Null if the point is not open (any more).
+  OpenPoint* Find(size_t point) const;
+  void Close(size_t point);
 
-  // Merges what was computed of the lease into `open`, its point or pilot, and tells the journal.
+  // Merges what was computed of the lease into `open`, its point, and tells the journal.
   // Returns the number of merged samples.
   uint64_t Merge(const Lease& lease, OpenPoint& open, LeaseReport report);
   // The point is finished. If it has not reached its tolerance, because the budget or the largest
@@ -139,8 +128,7 @@ class Run {
   // The point is finished, or has a chunk more that this process has computed. It is not being
   // opened any more.
   void NoteProgress(size_t point);
-  // Whether the suspicion is to be cleared: the run has progressed, and has no pilot that the next
-  // suspect may need.
+  // Whether the suspicion is to be cleared: the run has progressed, and none of its points is left.
   bool IsRefuted() const;
   void EndSuspicion() { request_.suspicion.reset(); }
 
@@ -158,18 +146,14 @@ class Run {
   bool Begin() { return !std::exchange(began_, true); }
 
  private:
-  // The lease has chunks of a point whose index is less than `end`.
-  std::optional<Lease> NextChunks(const Capacity& capacity, size_t end);
   std::optional<Lease> NextOpening();
   bool NoteAwaited(const OpenPoint& point, const Capacity& capacity);
-  // The lease's point may have chunks to lease again.
-  void HasChunks(const Lease& lease);
   // `begun`: blocks of the lease that have begun but are not merged.
   void EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun);
   void CheckpointIfDue(size_t index, OpenPoint& open, bool at_once);
   // Whether only some points are computed now, and not this one.
   bool IsHeldBack(size_t point) const;
-  bool HasPointsToOpen() const { return !reopen_.empty() || next_point_ < taken_.size(); }
+  bool HasPointsToOpen() const { return !suspected_.empty() || next_point_ < taken_.size(); }
   // The rest of the run takes long enough for executors that are not local.
   bool IsLarge() const;
   void SkipTakenPoints();
@@ -182,13 +166,11 @@ class Run {
   const int workers_;
 
   std::map<size_t, std::unique_ptr<OpenPoint>> open_;
-  std::map<PilotPlace, std::unique_ptr<OpenPoint>> pilots_;
-  std::set<size_t> leasable_;  // open points that may have chunks to lease
-  std::map<PilotPlace, std::vector<size_t>> waiting_;
-  std::set<size_t> reopen_;   // points whose pilot is known now, and those of a suspicion
-  std::vector<bool> taken_;   // by point: finished, or not to be opened in grid order
-  size_t next_point_ = 0;     // in grid order
-  std::set<size_t> opening_;  // points that are being opened or wait for a pilot
+  std::set<size_t> leasable_;   // open points that may have chunks to lease
+  std::set<size_t> suspected_;  // points of a suspicion that are still to be opened
+  std::vector<bool> taken_;     // by point: finished, or not to be opened in grid order
+  size_t next_point_ = 0;       // in grid order
+  std::set<size_t> opening_;    // points that are being opened
   size_t turns_ = 0;
   double awaited_memory_ = 0;
   bool hungry_elsewhere_ = false;  // an executor that is not local found nothing

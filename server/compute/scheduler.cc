@@ -6,7 +6,6 @@
 #include <iterator>
 #include <utility>
 
-#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "core/model_choice/ladder.h"
 #include "server/compute/crash_record.h"
@@ -76,20 +75,7 @@ Scheduler::RunPointer Scheduler::FindRun(int64_t key) const {
 
 std::vector<Lease> Scheduler::StopRun(Run& run, absl::Status why) {
   run.Stop(std::move(why));
-  EndPilots(run);
   return DropStoppedLeases(run);
-}
-
-// Runs that wait for the pilot open their points again; the first of them may start the pilot
-// again.
-void Scheduler::EndPilots(const Run& owner, std::optional<PilotPlace> only) {
-  std::erase_if(pilots_, [&](const auto& pilot) {
-    mutex_.AssertHeld();
-    const auto& [place, run] = pilot;
-    if (run != owner.key() || (only && place != *only)) return false;
-    for (const auto& [key, waiting] : runs_) waiting->PilotIsKnown(place);
-    return true;
-  });
 }
 
 // Elsewhere, a turn at a lease lasts until the lease ends.
@@ -155,7 +141,7 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
     MutexLock lock(mutex_);
     while (!shutting_down_ && !(lease = Choose(capacity)) && capacity.waits) woken_.Wait(mutex_);
     if (!lease) return std::nullopt;
-    SharesOf(*lease).TurnBegins(lease->payer);
+    SharesOf(*lease).TurnBegins(lease->run);
     run = runs_.at(lease->run);
     if (lease->local) run->TurnBegins();
     begins = run->Begin();
@@ -174,7 +160,6 @@ std::optional<Lease> Scheduler::Choose(const Capacity& capacity) {
     if (!MayTakeTurn(run, capacity.local)) return false;
     lease = NextOf(run, capacity.local ? WithBounds(capacity, run) : capacity);
     if (capacity.local) held_.NoteAwaited(run.key(), lease ? 0 : run.awaited_memory());
-    if (capacity.local && !lease) lease = NextOfAwaitedPilot(run, capacity);
     return lease.has_value();
   });
   const bool none_waits_now = one_waited && !held_.OneWaits();  // the others have memory again
@@ -187,31 +172,12 @@ Capacity Scheduler::WithBounds(const Capacity& capacity, const Run& run) const {
   return bounded;
 }
 
-// The run takes a turn at a pilot of another run. Otherwise it would wait for the turns of that
-// run, which may have a lower priority.
-std::optional<Lease> Scheduler::NextOfAwaitedPilot(const Run& run, const Capacity& capacity) {
-  for (const auto& [place, points] : run.waiting()) {
-    const auto pilot = pilots_.find(place);
-    const RunPointer owner = pilot == pilots_.end() ? nullptr : FindRun(pilot->second);
-    if (owner == nullptr || &*owner == &run || !MayTakeTurn(*owner, true)) continue;
-    std::optional<Lease> lease = NextOf(*owner, WithBounds(capacity, *owner), place);
-    held_.NoteAwaited(owner->key(), lease ? 0 : owner->awaited_memory());
-    if (!lease) continue;
-    lease->payer = run.key();
-    return lease;
-  }
-  return std::nullopt;
-}
-
-std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity,
-                                       const std::optional<PilotPlace>& pilot) {
-  const bool may_continue = capacity.local && !run.stopped() && (pilot || !run.IsWantedElsewhere());
-  HeldLeases::Held* held = may_continue ? held_.FirstWithTurn(run.key(), pilot) : nullptr;
+std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
+  const bool may_continue = capacity.local && !run.stopped() && !run.IsWantedElsewhere();
+  HeldLeases::Held* held = may_continue ? held_.FirstWithTurn(run.key()) : nullptr;
   std::optional<Lease> lease;
   if (suspects_.empty() || !held_.HasLocal(run.key())) {
-    lease = held != nullptr ? run.NextLeaseBefore(held->lease, capacity)
-            : pilot         ? run.NextChunksOfPilot(capacity, pilot)
-                            : run.NextLease(capacity);
+    lease = held == nullptr ? run.NextLease(capacity) : run.NextChunks(capacity, held->lease.point);
   }
   if (lease) {
     if (lease->OpensPoints()) return lease;
@@ -231,7 +197,7 @@ void Scheduler::EndTurn(const Lease& lease, double seconds) {
     run = FindRun(lease.run);
     run->journal().Worked(seconds);
     run->TurnEnds();
-    SharesOf(lease).TurnEnds(lease.payer, seconds);
+    SharesOf(lease).TurnEnds(lease.run, seconds);
     if (!lease.OpensPoints()) held_.EndTurn(lease);
   }
   Wake();
@@ -282,10 +248,7 @@ void Scheduler::Open(const Lease& lease, size_t point) {
 }
 
 absl::Status Scheduler::OpenOne(Run& run, size_t index) {
-  OpenedPoint opened = opener_.Open(run.spec(), index);
-  if (const auto* place = std::get_if<PilotPlace>(&opened)) return AwaitPilot(run, index, *place);
-  auto open = std::make_unique<OpenPoint>(
-      std::get<std::unique_ptr<const PointExperiment>>(std::move(opened)));
+  auto open = std::make_unique<OpenPoint>(opener_.Open(run.spec(), index));
   open->memory = MemoryOf(run, index);
   if (run.request().has_checkpoints) {
     absl::Status resumed = Resume(run, index, *open);
@@ -307,27 +270,6 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
 LeaseMemory Scheduler::MemoryOf(const Run& run, size_t index) {
   const double one = std::ceil(opener_.MemoryOf(run.spec(), index, 1));
   return {one, std::ceil(opener_.MemoryOf(run.spec(), index, 2)) - one};
-}
-
-absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& place) {
-  {
-    MutexLock lock(mutex_);
-    if (run.stopped()) return absl::OkStatus();
-    run.PointAwaits(index, place);
-    if (!pilots_.emplace(place, run.key()).second) return absl::OkStatus();
-  }
-  absl::Cleanup give_up = [&] {
-    MutexLock lock(mutex_);
-    EndPilots(run, place);
-  };
-  // The pilot's result may have become known before this run took the pilot over.
-  if (!std::holds_alternative<PilotPlace>(opener_.Open(run.spec(), index))) return absl::OkStatus();
-  auto pilot = std::make_unique<OpenPoint>(opener_.OpenPilot(place));
-  pilot->memory = MemoryOf(run, index);
-  std::move(give_up).Cancel();
-  MutexLock lock(mutex_);
-  if (!run.stopped()) run.PilotOpened(place, std::move(pilot));
-  return absl::OkStatus();
 }
 
 absl::Status Scheduler::Resume(Run& run, size_t index, OpenPoint& open) {
@@ -358,7 +300,7 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
       if (!is_now) return absl::UnavailableError("the point is not computed now");
       Charge(*run, lease, report.seconds);
     }
-    OpenPoint* open = run ? run->Find(lease) : nullptr;
+    OpenPoint* open = run ? run->Find(lease.point) : nullptr;
     if (open == nullptr || open->fold().finished()) return absl::OkStatus();
     if (!lease.local) {
       checked = open->DropImpossible(report.chunks);
@@ -392,21 +334,16 @@ void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
   std::vector<Lease> dropped;
   {
     MutexLock lock(mutex_);
-    open = run->Find(lease);
+    open = run->Find(lease.point);
   }
   // A finished merge does not change, and only this thread closes the point.
   absl::Status told = Guarded(lease.point, [&] {
-    if (lease.pilot) {
-      opener_.KeepPilot(*lease.pilot, PilotOf(*open->experiment(), open->fold().Merged()));
-    } else {
-      run->journal().PointFinished(lease.point, *open->experiment(), open->fold());
-    }
+    run->journal().PointFinished(lease.point, *open->experiment(), open->fold());
     return absl::OkStatus();
   });
   {
     MutexLock lock(mutex_);
-    run->Close(lease);
-    if (lease.pilot) EndPilots(*run, *lease.pilot);
+    run->Close(lease.point);
     if (!told.ok()) dropped = StopRun(*run, std::move(told));
     run->TurnEnds();
   }

@@ -6,11 +6,10 @@
 // now. The scheduler merges chunks in order under its lock, so results depend neither on executors
 // nor on the order of reports.
 // Properties, each with a test of its name:
-//   1. APilotIsComputedOnceForAllRuns.
-//   2. AStoppedRunEndsWhenItsTurnsHaveEnded.
-//   3. TheLeasesOfThisServerTakeNoMoreMemoryThanTheLimit.
-//   4. ALargePointGetsItsTurn (held_leases.h).
-//   5. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
+//   1. AStoppedRunEndsWhenItsTurnsHaveEnded.
+//   2. TheLeasesOfThisServerTakeNoMoreMemoryThanTheLimit.
+//   3. ALargePointGetsItsTurn (held_leases.h).
+//   4. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
 //      deaths of the process (crash_record.h): other runs pause, and executors elsewhere too. It
 //      has one lease of one chunk at a time, so it holds no memory when it pauses.
 // Thread-safe.
@@ -116,25 +115,16 @@ class Scheduler {
   Capacity WithBounds(const Capacity& capacity, const Run& run) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> Choose(const Capacity& capacity) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // With `pilot`, of this pilot alone, which the run owns.
-  std::optional<Lease> NextOf(Run& run, const Capacity& capacity,
-                              const std::optional<PilotPlace>& pilot = {})
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::optional<Lease> NextOfAwaitedPilot(const Run& run, const Capacity& capacity)
+  std::optional<Lease> NextOf(Run& run, const Capacity& capacity)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // StopRun also stops the run. Both return leases whose work is to be destroyed without the
   // lock: their stop was requested, and no local turn at them is in progress.
   std::vector<Lease> DropStoppedLeases(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::vector<Lease> StopRun(Run& run, absl::Status why) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // Ends the pilots that the run owns; with `only`, just that one, if the run owns it.
-  void EndPilots(const Run& owner, std::optional<PilotPlace> only = {})
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Charge(Run& run, const Lease& lease, double seconds) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   absl::Status OpenOne(Run& run, size_t index) ABSL_LOCKS_EXCLUDED(mutex_);
   LeaseMemory MemoryOf(const Run& run, size_t index);
-  absl::Status AwaitPilot(Run& run, size_t index, const PilotPlace& place)
-      ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status Resume(Run& run, size_t index, OpenPoint& open);
   void FinishPoint(const RunPointer& run, const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
   void Conclude(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -159,7 +149,6 @@ class Scheduler {
   std::map<int64_t, RunPointer> runs_ ABSL_GUARDED_BY(mutex_);
   std::deque<int64_t> suspects_ ABSL_GUARDED_BY(mutex_);  // the first is computed alone
   HeldLeases held_ ABSL_GUARDED_BY(mutex_);
-  std::map<PilotPlace, int64_t> pilots_ ABSL_GUARDED_BY(mutex_);  // in progress, and by which run
 };
 
 }  // namespace ballpiston::server

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <thread>
 
 #include "server/convert/errors.h"
@@ -27,15 +26,13 @@ constexpr double kSecondsOfAFirstPoint = 8e-5;
 // In seconds of processor time.
 struct PlannedWork {
   double points = 0;
-  double pilots = 0;   // each is run once
   double stored = 0;   // of the store's thread
   double longest = 0;  // by the clock, of a point with few samples, which do not occupy all workers
 
-  double Computed() const { return points + pilots; }
   // Workers and the store's thread share the cores.
   double Time(int workers) const {
     const double cores = std::max(1.0, static_cast<double>(std::thread::hardware_concurrency()));
-    return std::max({Computed() / workers, stored, (Computed() + stored) / cores, longest});
+    return std::max({points / workers, stored, (points + stored) / cores, longest});
   }
 };
 
@@ -64,27 +61,23 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
   const size_t points = PointCount(checked.spec), planned = std::min(points, kMostPoints);
   v1::PlanEnsembleJobResponse response;
   PlannedWork work;
-  std::set<PilotPlace> pilots;
+  const Machine& machine = service.ladder.machine();
   for (size_t i = 0; i < planned; ++i) {
     if (call.is_abandoned()) return absl::CancelledError("the client is gone");
     const PointParameters point = PointAt(checked.spec, IndexOf(i, planned, points));
-    const Ladder ladder = service.ladder.LadderOf(checked.spec, point, pilots);
-    if (ladder.pilot) pilots.insert(*ladder.pilot);
-    work.pilots += ladder.work_of_pilot;
-    work.points += ladder.Chosen().work.value_or(0) - ladder.work_of_pilot;
+    const Ladder ladder = LadderFor(checked.spec, point, machine);
+    work.points += ladder.Chosen().work.value_or(0);
     work.longest = std::max(work.longest, ladder.Chosen().time);
     work.stored += SecondsToStore(ladder);
     response.set_memory(std::max(response.memory(), ladder.Chosen().memory));
     *response.add_points() = PointPlanMessage(point, ladder);
   }
-  const Machine& machine = service.ladder.machine();
   const double share = static_cast<double>(points) / static_cast<double>(planned);
   work.points *= share;
   work.stored *= share;
-  if (2 * pilots.size() > planned) work.pilots *= share;  // nearly every point has one of its own
   work.points += kSecondsOfAFirstPoint;
   response.set_point_count(static_cast<int32_t>(points));
-  response.set_work(work.Computed());
+  response.set_work(work.points);
   response.set_time(work.Time(machine.workers));
   response.set_workers(machine.workers);
   return response;

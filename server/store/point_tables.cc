@@ -5,12 +5,6 @@
 #include "absl/strings/str_cat.h"
 
 namespace ballpiston::server {
-namespace {
-
-// The epsilon of a pilot in equilibrium. It is not NULL, so that it can be part of a key.
-constexpr double kNoEpsilon = -1;
-
-}  // namespace
 
 void WriteCheckpoint(Database& database, int64_t job, int64_t point, int64_t chunk,
                      const std::string& record) {
@@ -98,27 +92,6 @@ std::vector<PointSize> ListFinishedPoints(Database& database, int64_t job) {
     query.ReadInto(point.point, point.samples, point.bytes);
   }
   return points;
-}
-
-void InsertPilot(Database& database, const std::string& engine_version, const PilotPlace& place,
-                 const Pilot& pilot) {
-  database.Run(
-      "INSERT INTO pilots (engine_version, rho, delta, epsilon, difference, standard_error)"
-      " VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
-      engine_version, place[kRho], place[kDelta], place.Find(kEpsilon).value_or(kNoEpsilon),
-      pilot.difference, pilot.standard_error);
-}
-
-std::optional<Pilot> FindPilot(Database& database, const std::string& engine_version,
-                               const PilotPlace& place) {
-  Query query = database.Select(
-      "SELECT difference, standard_error FROM pilots WHERE engine_version = ? AND rho = ?"
-      " AND delta = ? AND epsilon = ?",
-      engine_version, place[kRho], place[kDelta], place.Find(kEpsilon).value_or(kNoEpsilon));
-  if (!query.Next()) return std::nullopt;
-  Pilot pilot;
-  query.ReadInto(pilot.difference, pilot.standard_error);
-  return pilot;
 }
 
 }  // namespace ballpiston::server

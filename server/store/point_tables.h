@@ -1,6 +1,5 @@
-// The SQL about computed data: checkpoints and chunks of unfinished points, results of finished
-// ones, and pilot runs. Each function runs inside the transaction of its caller, which handles
-// errors (sqlite.h).
+// The SQL about computed data: checkpoints and chunks of unfinished points, and results of finished
+// ones. Each function runs inside the transaction of its caller, which handles errors (sqlite.h).
 #pragma once
 
 #include <cstddef>
@@ -10,7 +9,6 @@
 #include <vector>
 
 #include "absl/functional/function_ref.h"
-#include "core/model_choice/limit_error.h"
 #include "server/store/sqlite.h"
 
 namespace ballpiston::server {
@@ -78,11 +76,5 @@ struct PointSize {
 
 // All finished points, in grid order.
 std::vector<PointSize> ListFinishedPoints(Database& database, int64_t job);
-
-// The error of the limit that pilot runs measured, by place and engine. The first writer wins.
-void InsertPilot(Database& database, const std::string& engine_version, const PilotPlace& place,
-                 const Pilot& pilot);
-std::optional<Pilot> FindPilot(Database& database, const std::string& engine_version,
-                               const PilotPlace& place);
 
 }  // namespace ballpiston::server

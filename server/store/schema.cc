@@ -79,15 +79,6 @@ CREATE TABLE server (
   identity TEXT NOT NULL
 ) STRICT;
 INSERT INTO server (identity) VALUES (lower(hex(randomblob(8))));
-CREATE TABLE pilots (
-  engine_version TEXT NOT NULL,
-  rho REAL NOT NULL,
-  delta REAL NOT NULL,
-  epsilon REAL NOT NULL,
-  difference REAL NOT NULL,
-  standard_error REAL NOT NULL,
-  PRIMARY KEY (engine_version, rho, delta, epsilon)
-) STRICT;
 )sql";
 
 absl::Status Refused(const std::string& path, const std::string& why) {

@@ -32,7 +32,7 @@ bool IsDuration(double seconds) { return std::isfinite(seconds) && seconds >= 0;
 
 // `one_point` is a OnePointSpec by a model that samples.
 void FillQuestion(const EnsembleSpec& one_point, storage::Question& record) {
-  assert(!one_point.target.budget_seconds && one_point.purpose == Purpose::kAnswer);
+  assert(!one_point.target.budget_seconds);
   record.set_experiment(static_cast<uint32_t>(one_point.experiment->number));
   for (const Parameter* parameter : kParameters) {
     for (const double value : one_point.grid[*parameter]) {

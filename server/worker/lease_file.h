@@ -58,7 +58,7 @@ struct LeaseFile {
   double touch_seconds = 20;  // the worker updates the file's time at this interval
 };
 
-// The lease has chunks of a point, not of a pilot, and its spec has no budget.
+// The lease has chunks, and its spec has no budget.
 storage::Lease LeaseRecord(const Lease& lease, const std::string& server, double touch_seconds);
 
 // UNIMPLEMENTED with both versions if the lease is of another engine version. DATA_LOSS if this

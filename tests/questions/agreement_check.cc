@@ -77,8 +77,8 @@ std::vector<v1::PointResult> Answers(const EnsembleSpec& question, uint64_t roun
   for (const Model model : question.experiment->models()) {
     const auto spec = ByModel(question, model, round, machine, seconds);
     if (!spec) continue;
-    const auto answer = ChooseAnswer(*spec, PointAt(*spec, 0), machine, NoPilot);
-    v1::PointResult result = ComputePoint(*spec, 0, *answer).result;
+    const Answer answer = ChooseAnswer(*spec, PointAt(*spec, 0), machine);
+    v1::PointResult result = ComputePoint(*spec, 0, answer).result;
     const bool is_enough = !TakesSamples(model) || result.samples() >= kEnoughSamples;
     if (is_enough) answers.push_back(std::move(result));
   }

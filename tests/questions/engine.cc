@@ -64,7 +64,7 @@ class Asking {
     double work = 0;
     for (size_t i = 0; i < std::min(PointCount(spec_), kMostPoints); ++i) {
       const PointParameters point = PointAt(spec_, i);
-      ladders_.push_back(LadderFor(spec_, point, SomeMachine(), NoPilot));
+      ladders_.push_back(LadderFor(spec_, point, SomeMachine()));
       const v1::PointPlan plan = server::PointPlanMessage(point, ladders_.back());
       report_.Add(CheckPlan(plan));
       const v1::ModelPlan* const chosen = Chosen(plan);
@@ -185,7 +185,7 @@ void StartAndStop(const EnsembleSpec& spec, size_t index, const Answer& answer) 
   const auto point = PointExperiment::Create(spec, index, answer);
   LocalPoint local(*point);
   ImpatientQueue queue(local);
-  // A point without samples has no run: its pilot alone was too long to answer.
+  // A point without samples has no run.
   if (const auto run = point->StartRun(queue)) run->Advance();
 }
 

@@ -24,9 +24,6 @@ std::function<Report(const Question&)> ServerAsker(double most_seconds);
 
 // ---- one point, as the server computes it ----
 
-// The source of a ladder that knows no pilot.
-inline std::optional<Pilot> NoPilot(const PilotPlace&) { return std::nullopt; }
-
 struct ComputedPoint {
   v1::PointResult result;
   Findings findings;  // numbers that are not finite, which the message leaves out

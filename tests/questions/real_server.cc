@@ -31,7 +31,6 @@ class Conversation {
     request.set_fresh(true);
     const auto job = client_.Create(request);
     if (!job.ok()) return Failed(job.status());
-    // A pilot takes seconds, and a plan knows it.
     const bool is_long = !(plan->work() <= most_seconds);
     const auto end = is_long ? Cancel(job->name()) : AwaitEnd(job->name());
     if (!end.ok()) return Failed(end.status());

@@ -1,4 +1,4 @@
-// Opens points with a given experiment, without a choice and without pilots.
+// Opens points with a given experiment, without a choice.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +18,9 @@ class FactoryOpener : public PointOpener {
  public:
   explicit FactoryOpener(ExperimentFactory factory) : factory_(std::move(factory)) {}
 
-  OpenedPoint Open(const EnsembleSpec& spec, size_t index) override {
+  std::unique_ptr<const PointExperiment> Open(const EnsembleSpec& spec, size_t index) override {
     return factory_(spec, index);
   }
-  void KeepPilot(const PilotPlace&, const Pilot&) override {}
 
  private:
   const ExperimentFactory factory_;

@@ -199,8 +199,7 @@ Estimate Reference(const EnsembleSpec& question, const Estimate& by_model) {
 }  // namespace
 
 double ModelError::Stated() const {
-  const auto no_pilots = [](const PilotPlace&) { return std::optional<Pilot>(); };
-  return *ChooseAnswer(question, PointAt(question, 0), Machine(), no_pilots)->model_error;
+  return *ChooseAnswer(question, PointAt(question, 0), Machine()).model_error;
 }
 
 double ModelError::Ratio() const { return (std::fabs(difference) - 2 * standard_error) / Stated(); }

@@ -2,7 +2,6 @@
 #include "core/closed_form/ingoing_law.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/expected_returns.h"
-#include "core/model_choice/limit_error.h"
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
@@ -183,13 +182,6 @@ TEST(StandardErrors, ValueIsMissingWhereNothingWasMeasured) {
     }
     for (const Curve& curve : summary.curves) EXPECT_TRUE(curve.points.empty()) << curve.name;
   }
-}
-
-TEST(StandardErrors, PilotWithoutOneGivesNoBound) {
-  const PilotPlace place = PilotPlaceFor(PaperPoint(0.1, 0));
-  const auto pilot = PilotExperiment(place);
-  const Pilot without = PilotOf(*pilot, pilot->EmptyResult());
-  EXPECT_EQ(LimitErrorBound(without, place, place), HUGE_VAL);
 }
 
 }  // namespace

@@ -1,13 +1,9 @@
-// A machine to predict for, and pilots that are made up.
+// A machine to predict for, the choice, and the ladder.
 #pragma once
 
 #include <gtest/gtest.h>
 
-#include <optional>
-#include <vector>
-
 #include "core/ensemble/experiment_kind.h"
-#include "core/experiment/expected_limit_error.h"
 #include "core/model_choice/ladder.h"
 #include "tests/core/asked.h"
 
@@ -30,40 +26,13 @@ inline EnsembleSpec Relaxation(double delta, const Target& target = {}) {
   return SpecOf(&kEnergyRelaxation, PaperPoint(delta), target);
 }
 
-// Returns the same pilot for every place, and records the places.
-class MadeUpPilots {
- public:
-  explicit MadeUpPilots(std::optional<Pilot> pilot) : pilot_(pilot) {}
-  PilotSource source() {
-    return [this](const PilotPlace& place) {
-      asked_.push_back(place);
-      return pilot_;
-    };
-  }
-  const std::vector<PilotPlace>& asked() const { return asked_; }
-
- private:
-  std::optional<Pilot> pilot_;
-  std::vector<PilotPlace> asked_;
-};
-
-inline std::optional<Pilot> MayNotBeAsked(const PilotPlace&) {
-  ADD_FAILURE() << "a pilot where none can decide";
-  return std::nullopt;
-}
-
-inline std::optional<Pilot> Unknown(const PilotPlace&) { return std::nullopt; }
-
-inline std::optional<Answer> Choice(const EnsembleSpec& spec,
-                                    const PilotSource& pilots = MayNotBeAsked,
-                                    const Machine& machine = SomeMachine()) {
+inline Answer Choice(const EnsembleSpec& spec, const Machine& machine = SomeMachine()) {
   EXPECT_TRUE(Violations(spec).empty());
-  return ChooseAnswer(spec, PointAt(spec, 0), machine, pilots);
+  return ChooseAnswer(spec, PointAt(spec, 0), machine);
 }
 
-inline Ladder Planned(const EnsembleSpec& spec, const Machine& machine = SomeMachine(),
-                      const PilotSource& pilots = Unknown) {
-  return LadderFor(spec, PointAt(spec, 0), machine, pilots);
+inline Ladder Planned(const EnsembleSpec& spec, const Machine& machine = SomeMachine()) {
+  return LadderFor(spec, PointAt(spec, 0), machine);
 }
 
 }  // namespace ballpiston

@@ -164,7 +164,7 @@ TEST_F(SchedulerTest, AReachedToleranceEndsBeforeTheBudget) {
   }
 }
 
-TEST(Scheduler, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
+TEST(Scheduler, ProcessorTimeIsReportedOfOpeningsAndBlocksAlike) {
   // Uses some processor time of the thread, also on a busy machine.
   const auto compute = [] {
     timespec begin{}, now{};

@@ -137,14 +137,14 @@ class SteppedExecutor {
   }
 
   // A turn; false if there is no lease now.
-  bool TakeTurn(uint64_t blocks = std::numeric_limits<uint64_t>::max(), double seconds = 0) {
+  bool TakeTurn(uint64_t blocks = std::numeric_limits<uint64_t>::max()) {
     const std::optional<Lease> lease = Begin();
-    if (lease) End(*lease, blocks, seconds);
+    if (lease) End(*lease, blocks);
     return lease.has_value();
   }
 
-  void TakeAllTurns(uint64_t blocks = std::numeric_limits<uint64_t>::max()) {
-    while (TakeTurn(blocks)) {
+  void TakeAllTurns() {
+    while (TakeTurn()) {
     }
   }
 

@@ -114,7 +114,6 @@ TEST_F(PlanServiceTest, MemoryIsThatOfTheLargestGas) {
 
 TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandOfItsPoints) {
   v1::EnsembleSpec spec = QuestionOf(kEnergyRelaxation);
-  // The billiard needs no pilots; the number of pilots is not the number of points.
   spec.set_model(v1::EnsembleSpec::BILLIARD);
   spec.mutable_target()->set_tolerance(0.01);
   spec.mutable_grid()->clear_delta();
@@ -141,19 +140,6 @@ TEST_F(PlanServiceTest, TheOrderOfAListDoesNotMatter) {
     works.push_back(PlanOf(spec).work());
   }
   EXPECT_NEAR(works[0] / works[1], 1, 0.05);
-}
-
-TEST_F(PlanServiceTest, ALargeGridHasItsPilots) {
-  v1::EnsembleSpec spec = QuestionOf(kEnergyRelaxation);
-  spec.mutable_target()->set_tolerance(0.02);
-  spec.mutable_grid()->set_delta(0, 0.002);
-  const auto work_of = [&](int points) {
-    spec.mutable_grid()->clear_rho();
-    for (int i = 0; i < points; ++i) spec.mutable_grid()->add_rho(0.51 + 0.18 * i / points);
-    return PlanOf(spec).work();
-  };
-  const double of_few = work_of(1000);
-  EXPECT_NEAR(work_of(5000) / of_few, 5, 1);
 }
 
 }  // namespace

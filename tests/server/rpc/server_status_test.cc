@@ -37,7 +37,7 @@ class ServerStatusTest : public testing::Test {
   Authenticator authenticator_{/*needs_tokens=*/false};
   std::unique_ptr<Store> store_ =
       *Store::Open(folder_.File("store.sqlite3"), {.stall = kUnreachedLimit});
-  ModelLadder ladder_{*store_, 2};
+  ModelLadder ladder_{2};
   ThreadPool pool_{
       2, FakeExperiments([this](size_t, uint64_t, std::stop_token stop) { gate_.Pass(stop); })};
   JobBook book_{*store_, limits_, pool_.scheduler()};

@@ -64,38 +64,6 @@ TEST_F(StoreTest, TheReaderCannotWrite) {
   EXPECT_FALSE(store->Read([](Database& database) { database.Execute("DELETE FROM jobs"); }).ok());
 }
 
-TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
-  const PilotPlace in_equilibrium = {{kRho, 0.53}, {kDelta, 0.1}};
-  const PilotPlace at_zero = {{kRho, 0.53}, {kDelta, 0.1}, {kEpsilon, 0.0}};
-  const PilotPlace from_energy = {{kRho, 0.53}, {kDelta, 0.1}, {kEpsilon, 0.25}};
-  const std::tuple<std::string, PilotPlace, double> pilots[] = {{"2", in_equilibrium, 0.1},
-                                                                {"2", at_zero, -0.2},
-                                                                {"2", from_energy, 0.3},
-                                                                {"3", in_equilibrium, 0.4}};
-  const auto keep = [&](const std::string& engine, const PilotPlace& place, double difference) {
-    EXPECT_OK(Open()->Commit([&](Database& database) {
-      InsertPilot(database, engine, place,
-                  {.difference = difference, .standard_error = difference / 3});
-    }));
-  };
-  for (const auto& [engine, place, difference] : pilots) keep(engine, place, difference);
-  keep("2", in_equilibrium, 0.5);  // the first one stays
-  const auto store = Open();
-  const auto stored = [&](const std::string& engine, const PilotPlace& place) {
-    return ReadFrom(*store, [&](Database& database) { return FindPilot(database, engine, place); });
-  };
-  for (const auto& [engine, place, difference] : pilots) {
-    const auto found = stored(engine, place);
-    ASSERT_TRUE(found);
-    EXPECT_EQ(found->difference, difference);
-    EXPECT_EQ(found->standard_error, difference / 3);
-    EXPECT_FALSE(found->predicted);
-  }
-  EXPECT_FALSE(stored("3", from_energy));
-  EXPECT_FALSE(stored("2", {{kRho, 0.53}, {kDelta, 0.2}}));
-  EXPECT_FALSE(stored("2", {{kRho, 0.54}, {kDelta, 0.1}}));
-}
-
 // SQLite may make an empty log and an index beside the file.
 TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
   ASSERT_OK(Open()->Commit([&](Database& database) {

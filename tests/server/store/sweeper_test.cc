@@ -94,8 +94,8 @@ TEST_F(SweeperTest, AStepRemovesFewRows) {
 TEST_F(SweeperTest, ABackupHasNoFreePages) {
   {
     const auto database = *OpenStoreFile(path_);
-    database->Execute("INSERT INTO pilots VALUES (hex(zeroblob(500000)), 1, 1, 1, 1, 1)");
-    database->Execute("DELETE FROM pilots");
+    database->Execute("INSERT INTO checkpoints VALUES (1, 1, zeroblob(1000000))");
+    database->Execute("DELETE FROM checkpoints");
     EXPECT_GT(database->Integer("PRAGMA freelist_count"), 200);
   }
   const std::string copy = folder_.File("copy");
