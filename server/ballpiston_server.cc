@@ -71,7 +71,8 @@ void SetPings(grpc::ServerBuilder& builder) {
 
 // Bounds what clients can use before they are authenticated: streams, memory and threads. Each call
 // has a thread. The quota has more than there can be streams, so other calls find a thread. gRPC
-// itself refuses requests of more than 4 MiB.
+// itself refuses requests of more than 4 MiB, but it compares the size before it decompresses. So
+// compressed requests are refused.
 void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   using Option = grpc::ServerBuilder::SyncServerOption;
   grpc::ResourceQuota quota("ballpiston");
@@ -85,6 +86,8 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   builder.SetSyncServerOption(Option::MAX_POLLERS, 2);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);  // no other server shares the port
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kStreamsPerConnection);
+  builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
+  builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
 }
 
 absl::StatusOr<ListenAddress> ParseMetricsAddress(const std::string& text) {
