@@ -13,7 +13,7 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
-#include "server/rpc/reflection_check.h"
+#include "server/rpc/builtin_streams.h"
 #include "server/rpc/server_status.h"
 #include "server/status/failpoint.h"
 #include "server/status/log.h"
@@ -224,7 +224,7 @@ absl::Status BallpistonServer::Listen() {
   builder.RegisterService(&server_);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(calls_.InterceptorFactory());
-  interceptors.push_back(std::make_unique<ReflectionCheck>(door_->authenticator()));
+  interceptors.push_back(std::make_unique<BuiltinStreams>(door_->authenticator()));
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
   int port = 0;
   builder.AddListeningPort(address_.Text(), door_->Credentials(), &port);
