@@ -36,7 +36,7 @@ TEST(BuiltinStreams, HealthWatchesAreLimited) {
     return watches.back()->Read().has_value();
   };
   for (int i = 0; i < kHealthWatches; ++i) ASSERT_TRUE(watch()) << i;
-  EXPECT_FALSE(watch());
+  ASSERT_FALSE(watch());
   EXPECT_THAT(watches.back()->Finish(), StatusIs(grpc::StatusCode::RESOURCE_EXHAUSTED));
   EXPECT_OK(CallByName(server.channel(), kCheckHealth));
   watches.clear();
