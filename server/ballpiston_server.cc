@@ -13,7 +13,7 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
-#include "server/rpc/reflection_check.h"
+#include "server/rpc/builtin_streams.h"
 #include "server/rpc/server_status.h"
 #include "server/status/failpoint.h"
 #include "server/status/log.h"
@@ -71,7 +71,8 @@ void SetPings(grpc::ServerBuilder& builder) {
 
 // Bounds what clients can use before they are authenticated: streams, memory and threads. Each call
 // has a thread. The quota has more than there can be streams, so other calls find a thread. gRPC
-// itself refuses requests of more than 4 MiB.
+// itself refuses requests of more than 4 MiB, but it compares the size before it decompresses. So
+// compressed requests are refused.
 void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   using Option = grpc::ServerBuilder::SyncServerOption;
   grpc::ResourceQuota quota("ballpiston");
@@ -85,6 +86,8 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   builder.SetSyncServerOption(Option::MAX_POLLERS, 2);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);  // no other server shares the port
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kStreamsPerConnection);
+  builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
+  builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
 }
 
 absl::StatusOr<ListenAddress> ParseMetricsAddress(const std::string& text) {
@@ -221,7 +224,7 @@ absl::Status BallpistonServer::Listen() {
   builder.RegisterService(&server_);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(calls_.InterceptorFactory());
-  interceptors.push_back(std::make_unique<ReflectionCheck>(door_->authenticator()));
+  interceptors.push_back(std::make_unique<BuiltinStreams>(door_->authenticator()));
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
   int port = 0;
   builder.AddListeningPort(address_.Text(), door_->Credentials(), &port);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -18,18 +19,21 @@ using Strings = std::vector<std::string>;
 
 // Each script passes the words so far; the last word is the word to complete. The answer FILES
 // means that the shell completes names of files. bash splits --flag=value into three words, and
-// replaces only the last one.
+// replaces only the last one. `compgen -W` would execute $(...) in an offer.
 constexpr char kBash[] = R"bash(# bash completion for ballpiston
 _ballpiston() {
-  local words=("${COMP_WORDS[@]:1:COMP_CWORD}") word=${COMP_WORDS[COMP_CWORD]} offers
+  local words=("${COMP_WORDS[@]:1:COMP_CWORD}") word=${COMP_WORDS[COMP_CWORD]} offers offer
   [[ $word == = ]] && word=
   mapfile -t offers < <(ballpiston completion words -- "${words[@]}" 2>/dev/null)
   if [[ ${offers[0]} == FILES ]]; then
     compopt -o filenames
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
   else
-    offers=("${offers[@]%%$'\t'*}")
-    mapfile -t COMPREPLY < <(compgen -W "${offers[*]#--*=}" -- "$word")
+    COMPREPLY=()
+    for offer in "${offers[@]%%$'\t'*}"; do
+      offer=${offer#--*=}
+      [[ $offer == "$word"* ]] && COMPREPLY+=("$offer")
+    done
   fi
 }
 complete -F _ballpiston ballpiston
@@ -82,7 +86,15 @@ Strings VerbOffers(Strings so_far) {
   return offers;
 }
 
-// The names of the newest jobs. Empty if no server runs: completion starts no server.
+// Whether the text is one word that no shell changes or executes.
+bool IsPlain(absl::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) {
+    return absl::ascii_isalnum(static_cast<unsigned char>(c)) || absl::StrContains("/_-", c);
+  });
+}
+
+// The names of the newest jobs. Empty if no server runs: completion starts no server. A server's
+// name that is not plain is left out.
 Strings JobNames(const Options& options, const Terminal& terminal) {
   constexpr int kMost = 50;
   constexpr absl::Duration kTimeout = absl::Seconds(1);  // the user waits for the shell
@@ -92,7 +104,9 @@ Strings JobNames(const Options& options, const Terminal& terminal) {
   const auto list = [&](const Connection& connection) -> VerbResult {
     const auto jobs = Client(connection.channel, kTimeout).List(request, kMost);
     if (!jobs.ok()) return jobs.status();
-    for (const v1::EnsembleJob& job : *jobs) names.push_back(job.name());
+    for (const v1::EnsembleJob& job : *jobs) {
+      if (IsPlain(job.name())) names.push_back(job.name());
+    }
     return ExitCode::kDone;
   };
   const VerbResult ignored = WithServer(options, terminal, list, /*may_start=*/false);

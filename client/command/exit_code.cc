@@ -13,7 +13,8 @@ ExitCode OfLimit(const absl::Status& status) {
   const std::string reason = ErrorReason(status);
   if (absl::StrContains(status.message(), kTooLarge)) return ExitCode::kUsage;
   if (reason.empty()) return ExitCode::kFailed;
-  return reason == "TOO_MANY_POINTS" ? ExitCode::kUsage : ExitCode::kUnreachable;
+  const bool is_lasting = reason == "TOO_MANY_POINTS" || reason == "TOO_MANY_PINNED_BYTES";
+  return is_lasting ? ExitCode::kUsage : ExitCode::kUnreachable;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
@@ -42,15 +43,18 @@ std::string HomeFolder() {
   return user != nullptr ? user->pw_dir : "";
 }
 
-// Another user may have made a folder of this name in /tmp: accept only the user's own folder.
-absl::Status CheckPrivate(const std::string& folder) {
+// Another user may have made the folder. Whoever owns it or can write to it can replace the socket.
+// `for_others`: the rights that others must not have.
+absl::Status CheckPrivate(const std::string& folder, mode_t for_others) {
   struct stat status;
   if (lstat(folder.c_str(), &status) != 0) return absl::ErrnoToStatus(errno, folder);
-  if (!S_ISDIR(status.st_mode) || status.st_uid != getuid() || (status.st_mode & 077) != 0) {
-    return absl::PermissionDeniedError(
-        absl::StrCat(folder, " must be a folder that only this user can enter"));
-  }
-  return absl::OkStatus();
+  const bool is_own = S_ISDIR(status.st_mode) && status.st_uid == geteuid();
+  if (is_own && (status.st_mode & for_others) == 0) return absl::OkStatus();
+  return absl::PermissionDeniedError(absl::StrFormat(
+      "the private server's folder %s belongs to user %d and has mode %04o, but must be private: "
+      "%s, or choose another one with XDG_STATE_HOME",
+      folder, status.st_uid, status.st_mode & 07777,
+      is_own ? "run chmod 700 " + folder : "remove it"));
 }
 
 absl::Status MakeFolder(const std::string& folder) {
@@ -76,7 +80,7 @@ absl::StatusOr<std::string> SocketIn(const std::string& folder) {
   constexpr char kSocket[] = "/server.socket";
   if (root.empty() || root.size() + name.size() + sizeof(kSocket) > kMaxSocketPath) root = "/tmp";
   if (absl::Status made = MakeFolder(root + name); !made.ok()) return made;
-  if (absl::Status own = CheckPrivate(root + name); !own.ok()) return own;
+  if (absl::Status own = CheckPrivate(root + name, 077); !own.ok()) return own;
   return absl::StrCat(root, name, kSocket);
 }
 
@@ -135,6 +139,8 @@ std::string StateFolder() {
 absl::StatusOr<LocalServer> FindLocalServer() {
   LocalServer server{.folder = StateFolder(), .socket = "", .program = UsualServerProgram()};
   if (absl::Status made = MakeFolder(server.folder); !made.ok()) return made;
+  // The folder may be a link. The server itself closes it to readers.
+  if (absl::Status own = CheckPrivate(server.folder + "/.", 022); !own.ok()) return own;
   absl::StatusOr<std::string> socket = SocketIn(server.folder);
   if (!socket.ok()) return socket.status();
   server.socket = *std::move(socket);

@@ -38,7 +38,8 @@ std::string StateFolder();
 // Reads the environment: XDG_STATE_HOME, HOME, TMPDIR, BALLPISTON_SERVER_PROGRAM (else
 // `ballpistond` beside this program, else in PATH). Creates the folders. If the state folder's path
 // is too long for a socket, the socket is in a private folder in $TMPDIR or /tmp.
-// PERMISSION_DENIED, or the error from creating a folder.
+// PERMISSION_DENIED if a folder is another user's or others can write to it, or the error from
+// creating a folder.
 absl::StatusOr<LocalServer> FindLocalServer();
 
 // Starts the server if needed, and returns a channel on which the server answers. UNAVAILABLE, with

@@ -1,4 +1,5 @@
 // Aligned columns of text. The first row is the header. Columns of numbers are aligned right.
+// Control characters are escaped, because texts of a server may change the terminal.
 #pragma once
 
 #include <ostream>
@@ -18,7 +19,7 @@ class TextTable {
   // One text for each column.
   void AddRow(std::vector<std::string> row);
   // A text across all columns; the columns' widths do not depend on it.
-  void AddLine(std::string text);
+  void AddLine(const std::string& text);
   // Indents each line by `indent` blanks. No line ends with blanks.
   void Print(std::ostream& out, size_t indent = 0) const;
 

@@ -43,14 +43,17 @@ const httplib::Headers& SafeHeaders() {
   return *headers;
 }
 
-// Uses a content provider: the library would compress a plain body, which is slow.
+// Uses a content provider: the library would compress a plain body, which is slow. If the response
+// has the header Connection: close, the provider fails at the end, so that the library closes the
+// connection. The header alone does not make it do so.
 void Respond(std::string content, const std::string& type, Response& response) {
   const auto body = std::make_shared<const std::string>(std::move(content));
   if (body->empty()) return response.set_content("", type);
-  response.set_content_provider(body->size(), type,
-                                [body](size_t offset, size_t length, httplib::DataSink& sink) {
-                                  return sink.write(body->data() + offset, length);
-                                });
+  const bool closes = response.has_header("Connection");
+  response.set_content_provider(
+      body->size(), type, [body, closes](size_t offset, size_t length, httplib::DataSink& sink) {
+        return sink.write(body->data() + offset, length) && !closes;
+      });
 }
 
 void RespondError(const absl::Status& status, int http_status, Response& response) {
@@ -115,8 +118,9 @@ class WebServer {
       const int yes = 1;
       setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     });
-    server_.Get("/([^/]*)", Checked([this](const auto& in, auto& out) { SendFile(in, out); }));
-    server_.Post("/(.+)", Checked([this](const auto& in, auto& out) { PassOn(in, out); }));
+    server_.set_pre_routing_handler([this](const auto& in, auto& out) { return Admit(in, out); });
+    server_.Get("/([^/]*)", [this](const auto& in, auto& out) { SendFile(in, out); });
+    server_.Post("/(.+)", [this](const auto& in, auto& out) { PassOn(in, out); });
   }
 
   absl::Status Bind(int port) {
@@ -148,16 +152,6 @@ class WebServer {
                                                     absl::StrJoin(hosts_, ", " + scheme)));
   }
 
-  // Rejects requests that other web pages send, and requests to another address.
-  httplib::Server::Handler Checked(httplib::Server::Handler handler) {
-    return [this, handler](const Request& request, Response& response) {
-      absl::Status checked = CheckHost("Host", "", request);
-      if (request.has_header("Origin")) checked.Update(CheckHost("Origin", "http://", request));
-      if (!checked.ok()) return RespondError(checked, response);
-      handler(request, response);
-    };
-  }
-
   absl::Status CheckToken(const Request& request) const {
     const std::string given = request.get_header_value("Authorization");
     if (AreEqual(given, absl::StrCat("Bearer ", token_))) return absl::OkStatus();
@@ -166,6 +160,31 @@ class WebServer {
             ? "the header Authorization: Bearer TOKEN is missing; the token is in the address that "
               "ballpiston web printed"
             : "wrong token: each run of ballpiston web prints an address with a new token");
+  }
+
+  // The library limits only a body of a given length; it reads another one to its end.
+  static absl::Status CheckBody(const Request& request) {
+    const bool is_limited = request.has_header("Content-Length") &&
+                            !request.has_header("Transfer-Encoding") &&
+                            !request.has_header("Content-Encoding");
+    if (is_limited) return absl::OkStatus();
+    return absl::InvalidArgumentError(
+        "a call needs Content-Length, without Content-Encoding and Transfer-Encoding");
+  }
+
+  // Rejects requests that other web pages send, requests to another address, and calls without the
+  // token, before their body is read.
+  httplib::Server::HandlerResponse Admit(const Request& request, Response& response) const {
+    absl::Status checked = CheckHost("Host", "", request);
+    if (request.has_header("Origin")) checked.Update(CheckHost("Origin", "http://", request));
+    if (request.method != "GET" && request.method != "HEAD") {
+      checked.Update(CheckToken(request));
+      checked.Update(CheckBody(request));
+    }
+    if (checked.ok()) return httplib::Server::HandlerResponse::Unhandled;
+    response.set_header("Connection", "close");  // what follows is the body
+    RespondError(checked, response);
+    return httplib::Server::HandlerResponse::Handled;
   }
 
   void SendFile(const Request& request, Response& response) const {
@@ -179,8 +198,6 @@ class WebServer {
   }
 
   void PassOn(const Request& request, Response& response) const {
-    const absl::Status status = CheckToken(request);
-    if (!status.ok()) return RespondError(status, response);
     const auto* const method = FindMethod(request.matches[1].str());
     if (method == nullptr) {
       const std::string path = Quoted(request.matches[1].str());

@@ -5,7 +5,7 @@
 //   POST /ballpiston.v1.SERVICE/METHOD     a call, with the token
 //
 // Other programs on this machine, and web pages of other sites in the user's browser, can reach the
-// same port. Three headers of a request are checked:
+// same port. Three headers of a request are checked before its body is read:
 //
 //   Host           must be this page's address. This rejects a foreign name that resolves to this
 //                  machine (DNS rebinding).

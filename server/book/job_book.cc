@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
@@ -178,6 +179,23 @@ absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
   return StoreFailure(deleted);
 }
 
+namespace {
+
+// Refuses to pin the job if its principal's pinned jobs would then take more than half of the
+// store, which has to have room for others. An active job counts with the results that it has.
+void CheckPin(Database& database, const Limits& limits, const v1::EnsembleJob& job) {
+  const int64_t most = limits.max_store_bytes / 2;
+  const int64_t pinned = PinnedBytes(database, job.principal()) + StoredBytesOf(job);
+  if (most == 0 || pinned <= most) return;
+  database.Fail(
+      LimitExceeded("TOO_MANY_PINNED_BYTES",
+                    absl::StrCat(job.principal(), "'s pinned jobs would take ", pinned,
+                                 " bytes with this one, more than half of the store: unpin some"),
+                    "max-store-bytes", static_cast<double>(most)));
+}
+
+}  // namespace
+
 absl::StatusOr<v1::EnsembleJob> JobBook::Update(const Principal& caller, const std::string& id,
                                                 const JobChange& change) {
   JobRecord record;
@@ -185,6 +203,8 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Update(const Principal& caller, const s
     record = JobOf(database, caller, id, Grid::kLeftOut);
     v1::EnsembleJob& job = record.job;
     if (change.pinned && job.results_expired()) database.Fail(ResultsExpired(JobName(id)));
+    const bool is_new_pin = change.pinned.value_or(false) && !job.pinned();
+    if (is_new_pin && caller.role != Role::kAdmin) CheckPin(database, limits_, job);
     job.set_pinned(change.pinned.value_or(job.pinned()));
     job.set_priority(change.priority.value_or(job.priority()));
     if (change.labels) *job.mutable_labels() = {change.labels->begin(), change.labels->end()};

@@ -1,8 +1,10 @@
 // How long results are kept: Limits::retain_days and Limits::max_store_bytes.
 //
 // The results of a job that is not pinned expire `retain_days` after its end. If the store takes
-// more than kFullShare of its bound, results expire earlier, beginning with the job that ended
-// first. If no results are left that can expire, the expired jobs are deleted in the same order.
+// more than kFullShare of its bound, results expire earlier: those of the principal with the most
+// stored bytes, beginning with the job that ended first. If none of its results can expire, its
+// expired jobs are deleted in the same order; then the next principal follows. So no principal can
+// displace the results of another one that stores less.
 // The data of active and pinned jobs are never removed here, so the store may grow beyond the
 // bound; if they alone exceed it, no new job is accepted (acceptance.h).
 #include <cstdint>
@@ -40,7 +42,7 @@ std::vector<JobSize> EnoughOf(std::vector<JobSize> jobs, int64_t bytes) {
 Removal TooOld(Database& database, const Limits& limits, absl::Time now) {
   if (limits.retain_days == 0) return {};
   const absl::Time ended = now - absl::Hours(24) * limits.retain_days;
-  return {.jobs = ListRemovable(database, Removable::kResults, ended, kMostAtOnce)};
+  return {.jobs = ListRemovable(database, Removable::kResults, ended, "", kMostAtOnce)};
 }
 
 // Rows that the sweeper has still to remove take pages, so nothing more expires meanwhile.
@@ -49,9 +51,11 @@ Removal TooMuch(Database& database, const Limits& limits) {
   const auto most = static_cast<int64_t>(kFullShare * static_cast<double>(limits.max_store_bytes));
   const int64_t used = UsedBytes(database);
   if (used <= most) return {};
-  for (const Removable what : {Removable::kResults, Removable::kJobs}) {
-    auto jobs = ListRemovable(database, what, absl::InfiniteFuture(), kMostAtOnce);
-    if (!jobs.empty()) return {what, EnoughOf(std::move(jobs), used - most)};
+  for (const std::string& principal : PrincipalsBySize(database)) {
+    for (const Removable what : {Removable::kResults, Removable::kJobs}) {
+      auto jobs = ListRemovable(database, what, absl::InfiniteFuture(), principal, kMostAtOnce);
+      if (!jobs.empty()) return {what, EnoughOf(std::move(jobs), used - most)};
+    }
   }
   return {};
 }

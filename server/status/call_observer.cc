@@ -75,8 +75,9 @@ CallObserver::CallObserver()
        {"CREDENTIALS_MISSING", "CREDENTIALS_INVALID", "CREDENTIALS_EXPIRED", "ROLE_TOO_LOW"}) {
     not_let_in_.Add({{"reason", reason}});
   }
-  for (const char* reason : {"TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS", "TOO_MANY_POINTS",
-                             "TOO_MANY_STORED_BYTES", "TOO_MANY_STREAMS", "TOO_MANY_CALLS"}) {
+  for (const char* reason :
+       {"TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS", "TOO_MANY_POINTS", "TOO_MANY_STORED_BYTES",
+        "TOO_MANY_PINNED_BYTES", "TOO_MANY_STREAMS", "TOO_MANY_CALLS"}) {
     limits_reached_.Add({{"reason", reason}});
   }
 }

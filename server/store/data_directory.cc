@@ -110,15 +110,19 @@ bool IsAServers(const std::string& path) {
 absl::Status CloseToOthers(const std::string& path) {
   struct stat found {};
   if (stat(path.c_str(), &found) != 0) return NotWritable(path, errno);
+  if (found.st_uid != geteuid()) {
+    return absl::PermissionDeniedError(absl::StrCat("data folder ", path,
+                                                    " belongs to another user (", found.st_uid,
+                                                    "); choose another one with --data-dir"));
+  }
   constexpr mode_t kForOthers = S_IRWXG | S_IRWXO;
   if ((found.st_mode & kForOthers) == 0) return absl::OkStatus();
   const std::string open = absl::StrFormat("data folder %s is open to other users (mode %04o)",
                                            path, found.st_mode & 07777);
-  const bool is_ours = found.st_uid == geteuid() && (found.st_mode & S_ISVTX) == 0;
-  if (!is_ours || !IsAServers(path)) {
+  if ((found.st_mode & S_ISVTX) != 0 || !IsAServers(path)) {
     return absl::PermissionDeniedError(
         absl::StrCat(open, "; choose another one with --data-dir, or run chmod 700 ", path,
-                     " if it is yours and no other user needs its files"));
+                     " if no other user needs its files"));
   }
   if (chmod(path.c_str(), 0700) != 0) return NotWritable(path, errno);
   LogInfo(absl::StrCat(open, ": the server sets its mode to 0700"));

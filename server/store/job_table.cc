@@ -233,12 +233,12 @@ void RestartJob(Database& database, const JobRecord& record) {
 }
 
 std::vector<JobSize> ListRemovable(Database& database, Removable what, absl::Time ended_before,
-                                   int most) {
+                                   const std::string& principal, int most) {
   std::vector<JobSize> jobs;
-  Query query =
-      database.Select(absl::StrCat("SELECT sequence, bytes FROM jobs WHERE ", ConditionOf(what),
-                                   " AND end_time < ? ORDER BY end_time LIMIT ?"),
-                      ended_before, most);
+  Query query = database.Select(
+      absl::StrCat("SELECT sequence, bytes FROM jobs WHERE ", ConditionOf(what),
+                   " AND end_time < ? AND ? IN ('', principal) ORDER BY end_time LIMIT ?"),
+      ended_before, principal, most);
   while (query.Next()) jobs.push_back({query.Get<int64_t>(0), query.Get<int64_t>(1)});
   return jobs;
 }
@@ -256,6 +256,19 @@ int64_t RemovableBytes(Database& database) {
         database.Integer(absl::StrCat("SELECT sum(bytes) FROM jobs WHERE ", ConditionOf(what)));
   }
   return bytes;
+}
+
+std::vector<std::string> PrincipalsBySize(Database& database) {
+  std::vector<std::string> principals;
+  Query query =
+      database.Select("SELECT principal FROM jobs GROUP BY principal ORDER BY sum(bytes) DESC");
+  while (query.Next()) principals.push_back(query.Get<std::string>(0));
+  return principals;
+}
+
+int64_t PinnedBytes(Database& database, const std::string& principal) {
+  return database.Integer("SELECT sum(bytes) FROM jobs WHERE principal = ? AND pinned = 1",
+                          principal);
 }
 
 void ExpireJob(Database& database, int64_t sequence) {

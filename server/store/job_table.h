@@ -110,11 +110,16 @@ struct JobSize {
 // and jobs whose results have expired.
 enum class Removable { kResults, kJobs };
 
-// At most `most` such jobs that ended before `ended_before`. Those that ended first come first.
+// At most `most` such jobs that ended before `ended_before`, of one principal or, if it is empty,
+// of all. Those that ended first come first.
 std::vector<JobSize> ListRemovable(Database& database, Removable what, absl::Time ended_before,
-                                   int most);
+                                   const std::string& principal, int most);
 int64_t CountExpirable(Database& database, absl::Time ended_before);  // Removable::kResults
 int64_t RemovableBytes(Database& database);                           // of both kinds
+
+// The principals with jobs; those with the most stored bytes come first.
+std::vector<std::string> PrincipalsBySize(Database& database);
+int64_t PinnedBytes(Database& database, const std::string& principal);
 
 // After these two, the sweeper removes the results (sweeper.h); nobody can find them meanwhile.
 // ExpireJob has no effect on a pinned job. It keeps the row, so retries of its request are still

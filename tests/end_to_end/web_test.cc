@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tests/end_to_end/programs.h"
+#include "tests/server/http_get.h"
 
 namespace ballpiston {
 namespace {
@@ -135,7 +136,8 @@ TEST_F(WebTest, ErrorsHaveTheServersCodesReasonsAndViolations) {
   const httplib::Result long_one = Post("GetEnsembleJob", std::string(17 << 20, ' '));
   EXPECT_EQ(long_one->status, 413);
   EXPECT_THAT(long_one->body, HasSubstr(R"("code":"resource_exhausted")"));
-  const httplib::Result no_method = http_->Put("/a/b", "{}", kUnary);
+  const httplib::Result no_method =
+      http_->Put("/a/b", {{"Authorization", "Bearer " + token_}}, "{}", kUnary);
   EXPECT_EQ(no_method->status, 404);
   EXPECT_THAT(no_method->body, HasSubstr(R"("code":"unimplemented")"));
 }
@@ -169,6 +171,27 @@ TEST_F(WebTest, CallsNeedTheTokenAndThisPagesOriginAndHost) {
     EXPECT_EQ(refused->status, 403) << host;
     EXPECT_THAT(refused->body, HasSubstr("permitted: " + address + ", " + localhost));
     EXPECT_EQ(http_->Get("/", {{"Host", host}})->status, 403);
+  }
+}
+
+// The body never arrives. The answer does, and then the connection ends.
+TEST_F(WebTest, ARefusedRequestIsAnsweredBeforeItsBodyIsRead) {
+  const std::string address = host_.substr(host_.rfind('/') + 1);
+  const std::string host = "Host: " + address + "\r\n", length = "Content-Length: 9\r\n";
+  const std::string token = "Authorization: Bearer " + token_ + "\r\n";
+  const std::pair<std::string, int> rows[] = {
+      {"Host: evil.example\r\n" + token + length, 403},
+      {host + token + length + "Origin: null\r\n", 403},
+      {host + length, 401},
+      {host + token, 400},
+      {host + token + length + "Transfer-Encoding: chunked\r\n", 400},
+      {host + token + length + "Content-Encoding: gzip\r\n", 400}};
+  for (const std::string method : {"POST", "PUT"}) {
+    for (const auto& [headers, status] : rows) {
+      server::Connection connection(address);
+      connection.Send(method + " / HTTP/1.1\r\n" + headers + "\r\n");
+      EXPECT_THAT(connection.ReadToTheEnd(), StartsWith(absl::StrCat("HTTP/1.1 ", status)));
+    }
   }
 }
 

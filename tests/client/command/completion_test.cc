@@ -55,6 +55,8 @@ TEST_F(CompletionTest, OffersAnArgumentAtItsPlace) {
 TEST_F(CompletionTest, OffersTheJobsOfARunningServer) {
   server_.ensemble.jobs.push_back(job());
   job().set_name("ensembleJobs/d");
+  server_.ensemble.jobs.push_back(job());
+  server_.ensemble.jobs.back().set_name("ensembleJobs/$(date)");
   home_.UseAsPrivateServer(server_.Address());
   server_.Start();
   EXPECT_THAT(Offers({"watch", ""}), ElementsAre("ensembleJobs/d", "ensembleJobs/abc"));
@@ -140,6 +142,8 @@ TEST_F(CompletionScriptTest, BashChoosesFromTheWords) {
               ElementsAre("<completion>", "<words>", "<-->", "<list>", "<--format>", "<>"));
   EXPECT_THAT(Run("bash", InBash("no\\n--format=csv\\n", "ballpiston list --format = c", 4)),
               ElementsAre("csv", registered));
+  EXPECT_THAT(Run("bash", InBash("`date`\\n$(date)\\n", "ballpiston watch ''", 2)),
+              ElementsAre("`date`", "$(date)", registered));
   EXPECT_THAT(Run("bash", InBash("no\\n--label\\tof KEY=VALUE\\n", "ballpiston list --", 2)),
               ElementsAre("--label", registered));
 }

@@ -214,6 +214,21 @@ TEST_F(LocalServerTest, FollowsXdgStateHome) {
   EXPECT_EQ(FindLocalServer()->folder, home_.string() + "/.local/state/ballpiston");
 }
 
+TEST_F(LocalServerTest, AStateFolderThatOthersCanChangeIsRefused) {
+  const std::string folder = FindLocalServer()->folder;
+  for (const mode_t mode : {0720u, 0702u}) {
+    ASSERT_EQ(chmod(folder.c_str(), mode), 0);
+    EXPECT_THAT(FindLocalServer(), StatusIs(absl::StatusCode::kPermissionDenied,
+                                            HasSubstr("run chmod 700 " + folder)));
+  }
+  chmod(folder.c_str(), 0755);  // of a mkdir; the server sets it to 0700
+  EXPECT_OK(FindLocalServer());
+  if (geteuid() != 0) GTEST_SKIP() << "only root can give a folder away";
+  ASSERT_EQ(chown(folder.c_str(), 65534, 65534), 0);
+  EXPECT_THAT(FindLocalServer(), StatusIs(absl::StatusCode::kPermissionDenied,
+                                          HasSubstr("belongs to user 65534 and has mode 0755")));
+}
+
 TEST_F(LocalServerTest, ALongPathHasItsSocketInAPrivateFolderElsewhere) {
   home_variable_.Set((home_ / std::string(100, 'x')).string());
   const TemporaryFolder elsewhere("/tmp");  // a short path, whatever TMPDIR is

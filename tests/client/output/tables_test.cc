@@ -118,6 +118,11 @@ std::string Expiring(absl::Duration left) {
   return absl::StrCat("expire_time { seconds: ", seconds, " }");
 }
 
+TEST(JobList, ControlCharactersOfALabelAreEscapedInTheTable) {
+  EXPECT_THAT(ResultsColumn(R"(pinned: true labels { key: "a" value: "µ\033[2J\302\2331m" })"),
+              EndsWith("a=µ\\x1b[2J\\x9b1m"));
+}
+
 TEST(JobList, TheTableShowsTheExpiryOfResults) {
   EXPECT_EQ(ResultsColumn("pinned: true"), "pinned");
   EXPECT_EQ(ResultsColumn("results_expired: true " + Expiring(absl::Hours(-1))), "expired");

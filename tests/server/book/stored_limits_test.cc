@@ -180,6 +180,29 @@ TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
   ExpectSound();
 }
 
+TEST_F(StoredLimitsTest, ThePrincipalWithTheMostBytesMakesRoom) {
+  Start({.max_store_bytes = 600'000});
+  const std::string oldest = Done(kAnn, 1, 300), bens = Done(kBen, 2, 300);
+  for (uint64_t seed = 3; seed <= 30; ++seed) {
+    Done(kBen, seed, 300);
+    book_->KeepLimits(absl::Now());
+    AwaitThat([this] { return !ReadFrom(*store_, &IsSweeping); });
+  }
+  EXPECT_TRUE(Get(bens).results_expired());
+  EXPECT_EQ(PointsOf(oldest), 300u);
+}
+
+TEST_F(StoredLimitsTest, OnlyAnAdminPinsMoreThanHalfOfTheStore) {
+  Start({.max_store_bytes = 200'000});
+  const std::string first = Done(kAnn, 1, 300), second = Done(kAnn, 2, 600);
+  ASSERT_OK(book_->Update(kAnn, first, {.pinned = true}));
+  const absl::Status refused = book_->Update(kAnn, second, {.pinned = true}).status();
+  EXPECT_THAT(refused, IsError(absl::StatusCode::kResourceExhausted, "TOO_MANY_PINNED_BYTES"));
+  EXPECT_THAT(std::string(refused.message()), testing::HasSubstr("permits 100000"));
+  EXPECT_OK(book_->Update(kAnn, first, {.pinned = true}));
+  EXPECT_OK(book_->Update(kRoot, second, {.pinned = true}));
+}
+
 TEST_F(StoredLimitsTest, AStoreFullOfPinnedJobsRejectsNewJobs) {
   Start({.max_store_bytes = 200'000});
   const std::string pinned = Id(kAnn, Request(1, 900));

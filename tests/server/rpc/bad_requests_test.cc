@@ -189,5 +189,17 @@ TEST(BadRequests, EveryBadFieldIsNamed) {
   EXPECT_EQ(server.List().jobs_size(), 0);
 }
 
+// A few kilobytes could become a gigabyte.
+TEST(BadRequests, CompressedOnesAreUnimplemented) {
+  RunningServer server;
+  for (const auto algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP}) {
+    grpc::ClientContext context;
+    context.set_compression_algorithm(algorithm);
+    v1::EvaluatePairsResponse answer;
+    EXPECT_THAT(server.analytic().EvaluatePairs(&context, {}, &answer),
+                StatusIs(grpc::StatusCode::UNIMPLEMENTED));
+  }
+}
+
 }  // namespace
 }  // namespace ballpiston::server

@@ -96,14 +96,15 @@ TEST_F(DataFolder, AFileInItsPlaceIsRefused) {
               StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("File exists")));
 }
 
-TEST_F(DataFolder, AnOpenFolderOfAnotherUserIsRefused) {
+TEST_F(DataFolder, AFolderOfAnotherUserIsRefused) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can give a folder away";
-  Make(0755);
-  ASSERT_EQ(chown(path_.c_str(), 65534, 65534), 0);
-  const auto directory = DataDirectory::Open(path_);
-  EXPECT_THAT(directory,
-              StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("open to other users")));
-  EXPECT_EQ(Mode(), 0755u);
+  for (const mode_t mode : {0755u, 0700u}) {
+    Make(mode);
+    ASSERT_EQ(chown(path_.c_str(), 65534, 65534), 0);
+    EXPECT_THAT(DataDirectory::Open(path_),
+                StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("another user (65534)")));
+    EXPECT_EQ(Mode(), mode);
+  }
 }
 
 TEST(SyncNameOf, FlushesTheFolderThatHasTheName) {

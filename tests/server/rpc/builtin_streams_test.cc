@@ -1,4 +1,4 @@
-#include "server/rpc/reflection_check.h"
+#include "server/rpc/builtin_streams.h"
 
 #include "tests/server/preamble.h"
 
@@ -10,7 +10,7 @@ size_t ThreadsOfThisProcess() {
   return static_cast<size_t>(std::distance(begin(all), end(all)));
 }
 
-TEST(ReflectionCheck, StreamsUseLimitedThreadsAndOtherCallsGoOn) {
+TEST(BuiltinStreams, ReflectionStreamsUseLimitedThreadsAndOtherCallsGoOn) {
   RunningServer server;
   ASSERT_OK(CallByName(server.channel(), kReflection, kListServices));
   const size_t before = ThreadsOfThisProcess();
@@ -25,6 +25,22 @@ TEST(ReflectionCheck, StreamsUseLimitedThreadsAndOtherCallsGoOn) {
   EXPECT_OK(CallByName(server.channel(), kCheckHealth));
   streams.clear();
   AwaitThat([&server] { return CallByName(server.channel(), kReflection, kListServices).ok(); });
+}
+
+TEST(BuiltinStreams, HealthWatchesAreLimited) {
+  RunningServer server;
+  std::vector<std::unique_ptr<NamedCall>> watches;
+  const auto watch = [&] {
+    watches.push_back(std::make_unique<NamedCall>(server.channel(), kWatchHealth));
+    watches.back()->Send(kWholeServer);
+    return watches.back()->Read().has_value();
+  };
+  for (int i = 0; i < kHealthWatches; ++i) ASSERT_TRUE(watch()) << i;
+  ASSERT_FALSE(watch());
+  EXPECT_THAT(watches.back()->Finish(), StatusIs(grpc::StatusCode::RESOURCE_EXHAUSTED));
+  EXPECT_OK(CallByName(server.channel(), kCheckHealth));
+  watches.clear();
+  AwaitThat(watch);
 }
 
 }  // namespace
