@@ -7,7 +7,6 @@
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "core/ensemble/experiment_kind.h"
-#include "server/host.h"
 #include "server/status/failpoint.h"
 #include "server/status/log.h"
 
@@ -19,6 +18,8 @@ constexpr double kOperationsOfALease = 10;
 constexpr double kOperationsASecond = 100;
 constexpr std::chrono::seconds kBetweenPreparations(30);
 constexpr std::chrono::seconds kLongestBackoff(60);
+constexpr std::chrono::milliseconds kLongestEarlierPause(30'000);
+constexpr std::chrono::seconds kSlowLook(30);
 constexpr size_t kMostLaidAtOnce = 300;
 // A worker lists all waiting leases before it takes one.
 constexpr size_t kMostWaiting = 300;
@@ -69,12 +70,17 @@ void FolderExecutor::Start() {
   looking_ = std::make_unique<PeriodicThread>(options_.look, [this] { Look(); });
 }
 
-// Leases end by their time-out even if the folder cannot be used.
+// Leases end by their time-out even if the folder cannot be used. An operation of the folder that
+// hangs delays their ends until it returns.
 void FolderExecutor::Look() {
   const Clock::time_point now = SteadyNow();
   if (now < next_look_) return;
   const double pause = static_cast<double>(leases_.size()) / kLeasesListedASecond - 1;
   next_look_ = now + std::chrono::milliseconds(static_cast<int64_t>(1e3 * std::max(pause, 0.0)));
+  {
+    MutexLock lock(mutex_);
+    look_began_ = now;
+  }
   absl::Status outcome;
   try {
     outcome = Prepare();
@@ -94,13 +100,26 @@ absl::Status FolderExecutor::Prepare() {
   if (prepared_ && now - *prepared_ < kBetweenPreparations) return absl::OkStatus();
   absl::Status prepared = server_.prepare();
   if (!prepared.ok()) return prepared;
-  if (!prepared_) files_->Remove(kLeaseBeingWritten).IgnoreError();  // of a process that was killed
-  prepared_ = now;
+  if (!prepared_) prepared = RemoveEarlier();
+  if (prepared.ok()) prepared_ = now;
   return prepared;
+}
+
+// A worker cannot compute the leases of another version and ends; and this process lays the same
+// chunks again.
+absl::Status FolderExecutor::RemoveEarlier() {
+  files_->Remove(kLeaseBeingWritten).IgnoreError();
+  const auto waiting = files_->List("todo");
+  if (!waiting.ok()) return waiting.status();
+  for (const std::string& name : *waiting) {
+    if (!leases_.contains(name)) files_->Remove(LeaseFileName{name}.Todo()).IgnoreError();
+  }
+  return absl::OkStatus();
 }
 
 void FolderExecutor::NoteOutcome(const absl::Status& outcome) {
   MutexLock lock(mutex_);
+  look_began_.reset();
   status_.taken_leases = static_cast<double>(taken_);
   status_.waiting_leases = static_cast<double>(leases_.size() - taken_);
   const std::string problem(outcome.message());
@@ -126,17 +145,35 @@ absl::Status FolderExecutor::Collect() {
   for (const std::string& name : *taken) {
     if (const auto file = ParseTaken(name)) NoteTaken(*file);
   }
-  std::vector<LeaseFileName> reported;
-  for (const std::string& name : *done) {
-    const auto file = ParseDone(name);
-    if (file && Report(*file)) reported.push_back(*file);
-  }
+  const std::vector<LeaseFileName> reported = ReportDone(*done);
   if (reported.empty()) return absl::OkStatus();
   Failpoint("cluster.file_reported");
   absl::Status flushed = server_.flush();
   if (!flushed.ok()) return flushed;  // the files are read again
   for (const LeaseFileName& file : reported) End(file);
   return absl::OkStatus();
+}
+
+// Returns the files that are reported. A file of an earlier process may have to wait until its
+// point is open, so such files are read at growing intervals.
+std::vector<LeaseFileName> FolderExecutor::ReportDone(const std::vector<std::string>& done) {
+  const Clock::time_point now = SteadyNow();
+  const bool earlier_are_due = now >= next_earlier_;
+  bool earlier_stay = false;
+  std::vector<LeaseFileName> reported;
+  for (const std::string& name : done) {
+    const auto file = ParseDone(name);
+    const bool is_earlier = file && !leases_.contains(file->lease);
+    if (!file || (is_earlier && !earlier_are_due)) continue;
+    const bool stays = !Report(*file);
+    if (!stays) reported.push_back(*file);
+    earlier_stay |= is_earlier && stays;
+  }
+  if (!earlier_are_due) return reported;
+  earlier_pause_ = std::min(std::max(2 * earlier_pause_, options_.look), kLongestEarlierPause);
+  if (!earlier_stay) earlier_pause_ = std::chrono::milliseconds(0);
+  next_earlier_ = now + earlier_pause_;
+  return reported;
 }
 
 void FolderExecutor::NoteTaken(const LeaseFileName& file) {
@@ -338,9 +375,14 @@ absl::Status FolderExecutor::LayOne(const Lease& lease) {
   return absl::OkStatus();
 }
 
-FolderStatus FolderExecutor::Status() const {
+FolderStatus FolderExecutor::Status(Clock::time_point now) const {
   MutexLock lock(mutex_);
-  return status_;
+  FolderStatus status = status_;
+  if (look_began_ && now - *look_began_ > kSlowLook) {
+    status.problem = absl::StrCat("the folder answers slowly or not at all: a look has taken ",
+                                  SecondsBetween(*look_began_, now), " s so far");
+  }
+  return status;
 }
 
 }  // namespace ballpiston::server

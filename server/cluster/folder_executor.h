@@ -4,6 +4,7 @@
 // The folder is a means of transport and no store: it may be emptied at any time. The file of a
 // lease proves the chunks in it (worker/lease_file.h). So a later process of the
 // server reads the chunks that the workers of an earlier one left. The server looks every second:
+//   - A file in todo/ that this process did not lay is removed at the first look.
 //   - A lease in done/ ends. Its chunks are reported and on disk before its file is removed.
 //   - A lease in taken/ of which the server knows nothing is moved to done/, so its worker stops.
 //   - A lease that nobody takes goes back to the scheduler after the time-out, so this server's
@@ -30,6 +31,7 @@
 
 #include "absl/status/statusor.h"
 #include "server/compute/scheduler.h"
+#include "server/host.h"
 #include "server/mutex.h"
 #include "server/periodic_thread.h"
 #include "server/worker/lease_file.h"
@@ -73,6 +75,8 @@ struct FolderStatus {
 };
 
 class FolderExecutor {
+  using Clock = std::chrono::steady_clock;
+
  public:
   // The parts of the server that the executor uses.
   struct Server {
@@ -93,11 +97,9 @@ class FolderExecutor {
   // What Start calls from its thread every second. Tests call it themselves.
   void Look();
 
-  FolderStatus Status() const;
+  FolderStatus Status(Clock::time_point now = SteadyNow()) const;
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   // A lease that is in the folder.
   struct Laid {
     Lease lease;
@@ -111,7 +113,9 @@ class FolderExecutor {
   using Leases = std::map<std::string, Laid>;  // by name
 
   absl::Status Prepare();
+  absl::Status RemoveEarlier();
   absl::Status Collect();
+  std::vector<LeaseFileName> ReportDone(const std::vector<std::string>& done);
   void NoteTaken(const LeaseFileName& file);
   bool Report(const LeaseFileName& file);
   absl::Status ReportBytes(absl::string_view bytes, Laid* laid);
@@ -142,12 +146,15 @@ class FolderExecutor {
   uint64_t laid_ = 0;
   std::optional<Clock::time_point> prepared_;
   Clock::time_point next_look_ = {};
+  Clock::time_point next_earlier_ = {};  // look at the files of earlier processes in done/
+  std::chrono::milliseconds earlier_pause_{0};
   Clock::time_point next_laying_ = {};
   std::chrono::seconds backoff_{0};
   absl::Status laying_;  // the outcome of the last attempt to lay leases
 
   mutable Mutex mutex_;
   FolderStatus status_ ABSL_GUARDED_BY(mutex_);
+  std::optional<Clock::time_point> look_began_ ABSL_GUARDED_BY(mutex_);  // one that goes on
   std::unique_ptr<PeriodicThread> looking_;  // last: its thread uses all members above
 };
 

@@ -196,8 +196,10 @@ absl::StatusOr<SlurmQueue> SlurmTools::Query() {
   return ParseQueue(*lines);
 }
 
-absl::Status SlurmTools::Cancel() {
-  return Run({"scancel", "--me", absl::StrCat("--name=", name_)}, kOtherLimit).status();
+absl::Status SlurmTools::Cancel(bool also_running) {
+  std::vector<std::string> words = {"scancel", "--me", absl::StrCat("--name=", name_)};
+  if (!also_running) words.push_back("--state=PENDING");
+  return Run(std::move(words), kOtherLimit).status();
 }
 
 // ---- the workers ----
@@ -208,7 +210,8 @@ SlurmWorkers::SlurmWorkers(const SlurmOptions& options, std::unique_ptr<SlurmToo
       tools_(std::move(tools)),
       work_(std::move(work)),
       ready_(std::move(ready)),
-      array_size_(options.max_array_size) {}
+      array_size_(options.max_array_size),
+      step_(options.workers) {}
 
 void SlurmWorkers::Start() {
   looking_ = std::make_unique<PeriodicThread>(kBetweenLooks, [this] { Look(); });
@@ -221,13 +224,16 @@ void SlurmWorkers::Look() {
   const bool is_idle = !has_work && !may_have_workers_ && backoff_.count() == 0;
   if (now < next_query_ || is_idle) return;
   const absl::Status steered = Steer(work);
-  backoff_ = steered.ok() ? std::chrono::milliseconds(0)
-                          : std::clamp(2 * backoff_, options_.query_interval, kLongestPause);
+  if (!steered.ok()) {
+    backoff_ = std::clamp(2 * backoff_, options_.query_interval, kLongestPause);
+  } else if (fault_.ok()) {
+    backoff_ = std::chrono::milliseconds(0);
+  }
   next_query_ = now + std::max(backoff_, options_.query_interval);
-  const std::string problem(steered.message());
+  const std::string problem(steered.ok() ? fault_.message() : steered.message());
   MutexLock lock(mutex_);
   if (std::exchange(status_.problem, problem) == problem) return;
-  if (steered.ok()) return LogInfo("slurm: works again");
+  if (problem.empty()) return LogInfo("slurm: works again");
   LogError(absl::StrCat("slurm: ", problem));
 }
 
@@ -243,30 +249,53 @@ absl::Status SlurmWorkers::Steer(const FolderStatus& work) {
   const auto leases = static_cast<size_t>(work.waiting_leases + work.taken_leases);
   const size_t wanted = std::min(leases, options_.workers);
   may_have_workers_ = found > 0;
-  if (found > 0 && (wanted == 0 || !queue->never.empty())) {
-    absl::Status cancelled = tools_->Cancel();
-    if (!cancelled.ok() || queue->never.empty()) return cancelled;
-    return absl::UnavailableError("a worker would wait for ever: " + queue->never);
+  const absl::Status judged = Judge(work, *queue, wanted);
+  if (!judged.ok()) return judged;
+  const bool has_ended = wanted == 0 && work.problem.empty();
+  const bool had_ended = std::exchange(work_has_ended_, has_ended);
+  if (has_ended && had_ended && found > 0) {
+    trial_.reset();
+    return tools_->Cancel(true);
   }
-  const absl::Status working = CheckThatWorkersWork(work, *queue);
-  if (!working.ok() || found >= wanted) return working;
-  return Fill(backoff_.count() > 0 ? 1 : wanted - found);
+  const bool is_tried = !fault_.ok() && trial_;
+  if (found >= wanted || is_tried) return absl::OkStatus();
+  const absl::Status filled = Fill(std::min(wanted - found, step_));
+  if (filled.ok() && !trial_) trial_ = work.claims;
+  return filled;
 }
 
-// Otherwise workers that cannot run would be submitted again for ever.
-absl::Status SlurmWorkers::CheckThatWorkersWork(const FolderStatus& work, const SlurmQueue& queue) {
-  const bool were_in_vain = has_submitted_ && queue.waiting + queue.running == 0 &&
-                            work.claims == claims_ && work.waiting_leases > 0;
-  has_submitted_ = false;
-  claims_ = work.claims;
-  if (!were_in_vain) return absl::OkStatus();
-  return absl::UnavailableError(
-      "workers have ended without taking a lease; their messages are in the folder's log/");
+// Changes the state, as the table in the header says. Returns a fault that is found now.
+absl::Status SlurmWorkers::Judge(const FolderStatus& work, const SlurmQueue& queue, size_t wanted) {
+  if (!queue.never.empty()) {
+    absl::Status cancelled = tools_->Cancel(false);
+    return cancelled.ok() ? Fails("a worker would wait for ever: " + queue.never) : cancelled;
+  }
+  const size_t found = queue.waiting + queue.running;
+  const bool took_leases = trial_ && work.claims > *trial_;
+  if (trial_ && !took_leases && found == 0 && work.waiting_leases > 0) {
+    return Fails(
+        "workers have ended without taking a lease; their messages are in the folder's log/");
+  }
+  if (took_leases || found == 0) trial_.reset();
+  if (took_leases || (!trial_ && found >= wanted)) fault_ = absl::OkStatus();
+  return absl::OkStatus();
+}
+
+absl::Status SlurmWorkers::Fails(const std::string& why) {
+  trial_.reset();
+  step_ = 1;
+  return fault_ = absl::UnavailableError(why);
 }
 
 absl::Status SlurmWorkers::Fill(size_t missing) {
   const absl::Status ready = ready_();
   if (!ready.ok()) return ready;
+  absl::Status submitted = SubmitArrays(missing);
+  step_ = submitted.ok() ? std::min(2 * step_, options_.workers) : std::max(missing / 2, size_t{1});
+  return submitted;
+}
+
+absl::Status SlurmWorkers::SubmitArrays(size_t missing) {
   while (missing > 0) {
     const size_t workers = std::min(missing, array_size_);
     absl::Status submitted = tools_->Submit(workers);
@@ -281,7 +310,6 @@ absl::Status SlurmWorkers::Fill(size_t missing) {
     may_have_workers_ = true;
     if (!submitted.ok()) return submitted;
     Failpoint("cluster.submitted");
-    has_submitted_ = true;
     missing -= workers;
   }
   return absl::OkStatus();

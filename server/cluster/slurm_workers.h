@@ -5,8 +5,21 @@
 // does not matter which of them Slurm loses, starts twice or never starts: the next query of the
 // queue counts those that are there, and the difference is submitted. All workers of a server have
 // one job name. One query in 30 s, fewer after an error; none while there is no work, no
-// worker in the queue and no problem. Thread-safe. One thread, because Slurm's tools may block for
-// minutes.
+// worker in the queue and no problem. If two queries in turn find no leases, all workers are
+// cancelled; a server that has just started has none yet. Thread-safe. One thread, because Slurm's
+// tools may block for minutes.
+//
+// What the workers have shown decides how many are submitted at a query:
+//
+//   they      | since                                                      | submitted
+//   work      | the start, a lease that one of them took, or a query that  | those missing,
+//             | finds as many as there are leases                          | at most `step_`
+//   fail      | one would wait for ever (those that wait are cancelled),   | one, for a trial
+//             | or all have ended without taking a lease                   |
+//   are tried | the submission of this one                                 | none
+//
+// `step_` is --slurm-workers at first. A failure makes it 1, a refusal by Slurm half of the number
+// that was refused, and each submission that Slurm accepts doubles it.
 #pragma once
 
 #include <chrono>
@@ -66,7 +79,7 @@ class SlurmTools {
   // The message of an error is Slurm's own. Slurm may have accepted the array nevertheless.
   virtual absl::Status Submit(size_t workers);
   virtual absl::StatusOr<SlurmQueue> Query();
-  virtual absl::Status Cancel();  // all workers
+  virtual absl::Status Cancel(bool also_running);  // the workers that wait, or all
 
  private:
   // Runs the tool and returns what it prints. The tool is killed if it does not end within `limit`.
@@ -99,8 +112,10 @@ class SlurmWorkers {
   using Clock = std::chrono::steady_clock;
 
   absl::Status Steer(const FolderStatus& work);
+  absl::Status Judge(const FolderStatus& work, const SlurmQueue& queue, size_t wanted);
+  absl::Status Fails(const std::string& why);
   absl::Status Fill(size_t missing);
-  absl::Status CheckThatWorkersWork(const FolderStatus& work, const SlurmQueue& queue);
+  absl::Status SubmitArrays(size_t missing);
 
   const SlurmOptions options_;
   const std::unique_ptr<SlurmTools> tools_;
@@ -110,8 +125,11 @@ class SlurmWorkers {
   // Used only by the thread that looks.
   size_t array_size_;
   bool may_have_workers_ = true;  // of an earlier process
-  bool has_submitted_ = false;    // since the last query
-  double claims_ = 0;             // at the last query
+  bool work_has_ended_ = false;   // there was no lease at the last query
+  absl::Status fault_;            // why the workers fail; OK: they work
+  // Workers were submitted when so many leases had been taken, and none was taken since.
+  std::optional<double> trial_;
+  size_t step_;
   Clock::time_point next_query_ = {};
   std::chrono::milliseconds backoff_{0};
 

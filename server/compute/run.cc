@@ -1,6 +1,7 @@
 #include "server/compute/run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/model_choice/ladder.h"
@@ -9,8 +10,11 @@
 namespace ballpiston::server {
 namespace {
 
-// Open points of a run that wait for executors elsewhere; each takes some 50 kB.
-constexpr size_t kMostOpenPoints = 2000;
+// Open points of a run that wait for executors elsewhere. Each keeps some 50 kB and, of a gas with
+// many cells, about as much as a thread that computes it; other threads take up to 20 MB.
+constexpr double kMostOpenPoints = 2000;
+constexpr double kMemoryOfAnOpenPoint = 50e3;
+constexpr double kMemoryOfAThread = 20e6;
 
 // Points that one lease opens. kCheapPoints: if opening a point finishes it, in some 3 to 100 us.
 // kPointsForElsewhere: if points may wait for executors elsewhere.
@@ -104,12 +108,21 @@ bool Run::IsLarge() const {
 }
 
 bool Run::IsWantedElsewhere() const {
-  return hungry_elsewhere_ && HasPointsToOpen() && open_.size() < kMostOpenPoints && IsLarge();
+  return hungry_elsewhere_ && HasPointsToOpen() && IsLarge() && MorePoints() > 0;
+}
+
+// That may wait for executors elsewhere, beside those that are open. Requires IsLarge().
+size_t Run::MorePoints() const {
+  const double one =
+      std::max(sampled_memory_ / sampled_points_ - kMemoryOfAThread, kMemoryOfAnOpenPoint);
+  const double most = std::min(kMostOpenPoints, options_.memory_limit / one);
+  const auto open = static_cast<double>(open_.size() + opening_.size());
+  return open >= most ? 0 : static_cast<size_t>(std::ceil(most - open));
 }
 
 std::optional<Lease> Run::NextOpening() {
   const size_t most = NeedsNoSamples(*spec_) ? kCheapPoints
-                      : IsWantedElsewhere()  ? kPointsForElsewhere
+                      : IsWantedElsewhere()  ? std::min(kPointsForElsewhere, MorePoints())
                                              : 1;
   Lease lease;
   while (lease.opens.size() < most && !suspected_.empty()) {
@@ -131,6 +144,7 @@ void Run::PointOpened(size_t point, std::unique_ptr<OpenPoint> open) {
   if (stopped_) open->RequestStop();
   sampled_points_ += 1;
   sampled_seconds_ += open->ExpectedSeconds();
+  sampled_memory_ += open->memory.of_one_turn;
   opening_.erase(point);
   open_.emplace(point, std::move(open));
   leasable_.insert(point);

@@ -57,7 +57,8 @@ struct SchedulerOptions {
   // A run with less to compute, in seconds of one core at nominal speed, is computed here: to send
   // it elsewhere would take longer.
   double least_seconds_elsewhere = 60;
-  // Bytes. The leases that local executors hold take no more together, unless one does alone.
+  // Bytes. The leases that local executors hold take no more together, unless one does alone. Nor
+  // do the points of a run that wait for executors elsewhere, about.
   double memory_limit = std::numeric_limits<double>::infinity();
 };
 
@@ -156,6 +157,7 @@ class Run {
   bool HasPointsToOpen() const { return !suspected_.empty() || next_point_ < taken_.size(); }
   // The rest of the run takes long enough for executors that are not local.
   bool IsLarge() const;
+  size_t MorePoints() const;
   void SkipTakenPoints();
   Lease Completed(Lease lease) const;
 
@@ -176,6 +178,7 @@ class Run {
   bool hungry_elsewhere_ = false;  // an executor that is not local found nothing
   double sampled_points_ = 0;      // opened ones
   double sampled_seconds_ = 0;     // expected, of these
+  double sampled_memory_ = 0;      // bytes of a turn at each of these
   bool began_ = false;
   bool stopped_ = false;
   absl::Status why_stopped_;

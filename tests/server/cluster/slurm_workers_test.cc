@@ -13,8 +13,9 @@ struct FakeSlurm {
   SlurmQueue queue = {};
   absl::Status submits = {}, queries = {};
   size_t largest_array = 1'000'000;
+  size_t room = 1'000'000;  // for workers, under a limit of the account
   std::vector<size_t> submitted = {};
-  int asked = 0, cancelled = 0;
+  int asked = 0, cancelled = 0, waiting_cancelled = 0;
 };
 
 class FakeTools : public SlurmTools {
@@ -27,6 +28,7 @@ class FakeTools : public SlurmTools {
       return absl::UnavailableError("sbatch: Invalid job array specification");
     }
     slurm_.submitted.push_back(workers);
+    if (workers > slurm_.room) return absl::UnavailableError("sbatch: AssocMaxSubmitJobLimit");
     return absl::OkStatus();
   }
   absl::StatusOr<SlurmQueue> Query() override {
@@ -34,8 +36,8 @@ class FakeTools : public SlurmTools {
     if (!slurm_.queries.ok()) return slurm_.queries;
     return slurm_.queue;
   }
-  absl::Status Cancel() override {
-    ++slurm_.cancelled;
+  absl::Status Cancel(bool also_running) override {
+    ++(also_running ? slurm_.cancelled : slurm_.waiting_cancelled);
     return absl::OkStatus();
   }
 
@@ -82,12 +84,25 @@ TEST_F(SlurmWorkersTest, NoMoreWorkersThanTheFlagSays) {
 TEST_F(SlurmWorkersTest, WithoutLeasesTheQueueIsEmptiedAndNotAskedAgain) {
   SlurmWorkers workers = New();
   slurm_.queue = {.waiting = 1, .running = 2};
-  workers.Look();
+  for (int i = 0; i < 2; ++i) workers.Look();
   EXPECT_EQ(slurm_.cancelled, 1);
   slurm_.queue = {};
   for (int i = 0; i < 5; ++i) workers.Look();
-  EXPECT_EQ(slurm_.asked, 2);
+  EXPECT_EQ(slurm_.asked, 3);
   EXPECT_EQ(slurm_.cancelled, 1);
+}
+
+// A server that has just started, the time between two jobs, and a folder that cannot be used.
+TEST_F(SlurmWorkersTest, WorkersStayWhileTheirLeasesMayComeBack) {
+  SlurmWorkers workers = New();
+  slurm_.queue = {.waiting = 1, .running = 2};
+  for (const double leases : {0, 3, 0, 3}) {
+    work_ = {.waiting_leases = leases};
+    workers.Look();
+  }
+  work_ = {.problem = "the folder is gone"};
+  for (int i = 0; i < 5; ++i) workers.Look();
+  EXPECT_EQ(slurm_.cancelled, 0);
 }
 
 TEST_F(SlurmWorkersTest, TheQueueIsAskedOnceInAnInterval) {
@@ -133,22 +148,56 @@ TEST_F(SlurmWorkersTest, AFolderThatIsNotReadyGetsNoWorkers) {
   EXPECT_EQ(workers.Status().problem, "no space left");
 }
 
-TEST_F(SlurmWorkersTest, WorkersThatEndInVainAreSubmittedOneByOne) {
-  SlurmWorkers workers = New({.workers = 10, .query_interval = milliseconds(0)});
-  work_ = {.waiting_leases = 5};
-  workers.Look();
-  workers.Look();
-  EXPECT_THAT(workers.Status().problem, HasSubstr("without taking a lease"));
-  EXPECT_THAT(slurm_.submitted, ElementsAre(5));
+TEST_F(SlurmWorkersTest, ARefusedNumberIsHalvedAndAnAcceptedOneDoubled) {
+  SlurmWorkers workers = New({.workers = 40, .query_interval = milliseconds(0)});
+  work_ = {.waiting_leases = 40};
+  slurm_.room = 11;
+  for (int i = 0; i < 3; ++i) workers.Look();
+  slurm_.queue = {.waiting = 0, .running = 10};
+  slurm_.room = 1'000'000;
+  work_.claims = 10;
+  for (int i = 0; i < 2; ++i) workers.Look();
+  EXPECT_THAT(slurm_.submitted, ElementsAre(40, 20, 10, 20, 30));
 }
 
-TEST_F(SlurmWorkersTest, WorkersThatWouldWaitForEverAreCancelled) {
+// One worker is tried at a time. The fault is shown until this worker takes a lease.
+TEST_F(SlurmWorkersTest, WorkersThatFailAreTriedOneByOne) {
+  struct Row {
+    SlurmQueue queue;
+    double claims;
+    const char* problem;
+    std::vector<size_t> submitted;
+    int waiting_cancelled;
+  };
+  const SlurmQueue never = {.waiting = 1, .running = 2, .never = "PartitionTimeLimit"};
+  const Row rows[] = {{{}, 0, "", {5}, 0},
+                      {{}, 0, "without taking a lease", {}, 0},
+                      {{}, 0, "without taking a lease", {1}, 0},
+                      {{.running = 1}, 0, "without taking a lease", {}, 0},
+                      {{}, 0, "without taking a lease", {}, 0},
+                      {{}, 0, "without taking a lease", {1}, 0},
+                      {{.running = 1}, 1, "", {2}, 0},
+                      {never, 1, "for ever: PartitionTimeLimit", {}, 1},
+                      {{.running = 2}, 2, "for ever: PartitionTimeLimit", {1}, 0},
+                      {never, 3, "for ever: PartitionTimeLimit", {}, 1},
+                      {{}, 3, "for ever: PartitionTimeLimit", {1}, 0},
+                      {{.waiting = 1}, 3, "for ever: PartitionTimeLimit", {}, 0},
+                      {{.running = 1}, 4, "", {2}, 0},
+                      {never, 4, "for ever: PartitionTimeLimit", {}, 1},
+                      {{.running = 5}, 4, "", {}, 0}};
   SlurmWorkers workers = New();
   work_ = {.waiting_leases = 5};
-  slurm_.queue = {.waiting = 5, .running = 0, .never = "PartitionTimeLimit"};
-  workers.Look();
-  EXPECT_EQ(slurm_.cancelled, 1);
-  EXPECT_THAT(workers.Status().problem, HasSubstr("for ever: PartitionTimeLimit"));
+  for (const Row& row : rows) {
+    SCOPED_TRACE(&row - rows);
+    slurm_ = {.queue = row.queue};
+    work_.claims = row.claims;
+    workers.Look();
+    EXPECT_THAT(workers.Status().problem, HasSubstr(row.problem));
+    EXPECT_EQ(workers.Status().problem == "", row.problem == absl::string_view());
+    EXPECT_EQ(slurm_.submitted, row.submitted);
+    EXPECT_EQ(slurm_.waiting_cancelled, row.waiting_cancelled);
+    EXPECT_EQ(slurm_.cancelled, 0);
+  }
 }
 
 // A script in the place of the tools, in a folder with a name of two words.
@@ -211,10 +260,18 @@ TEST_F(SlurmToolsTest, AToolThatRunsLocksNoStream) {
   thread.join();
 }
 
+TEST_F(SlurmToolsTest, OnlyWaitingWorkersAreCancelledUnlessToldOtherwise) {
+  Install("scancel", "echo \"$*\" >>\"${0%/*}/words\"");
+  EXPECT_OK(New().Cancel(false));
+  EXPECT_OK(New().Cancel(true));
+  EXPECT_EQ(Contents(folder_.File("words")),
+            "--me --name=bp-me --state=PENDING\n--me --name=bp-me\n");
+}
+
 TEST_F(SlurmToolsTest, AnErrorHasTheToolsMessage) {
   const auto error = [&](const std::string& script) {
     Install("scancel", script);
-    return std::string(New().Cancel().message());
+    return std::string(New().Cancel(true).message());
   };
   EXPECT_EQ(error("echo 'scancel: error: no controller' >&2; echo 'scancel: later' >&2; exit 1"),
             "scancel: no controller; later");
@@ -222,7 +279,7 @@ TEST_F(SlurmToolsTest, AnErrorHasTheToolsMessage) {
   EXPECT_EQ(error("kill -KILL $$"), "scancel was killed; its time limit is 60 s");
   EXPECT_EQ(error("kill -SEGV $$"), "scancel: ended by signal 11");
   std::filesystem::remove(folder_.File("scancel"));
-  EXPECT_THAT(New().Cancel(),
+  EXPECT_THAT(New().Cancel(true),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("failed to run command")));
 }
 

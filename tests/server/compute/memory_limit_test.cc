@@ -105,5 +105,21 @@ TEST_F(MemoryLimitTest, ALargePointGetsItsTurn) {
   for (const auto& journal : journals) EXPECT_EQ(journal->ends, 1);
 }
 
+// Points of 520 MB, of which some 500 MB stay while they wait for executors elsewhere.
+TEST(MemoryLimit, PointsWaitElsewhereWithinTheLimit) {
+  SeedsAreBytes opener;
+  Scheduler scheduler(opener, 1, {.memory_limit = 4e9});
+  SteppedExecutor local(scheduler);
+  RemoteExecutor remote(scheduler, 1000);
+  EnsembleSpec spec = SixChunks(100);
+  spec.seed = 520'000'000;
+  scheduler.Add(RunOf(1, spec, std::make_shared<RecordingJournal>()));
+  ASSERT_TRUE(local.TakeTurn());
+  EXPECT_EQ(remote.TakeAll().size(), 1u);
+  ASSERT_TRUE(local.TakeTurn());
+  EXPECT_EQ(remote.TakeAll().size(), 7u);
+  scheduler.Shutdown();
+}
+
 }  // namespace
 }  // namespace ballpiston::server
