@@ -110,8 +110,9 @@ TEST(Ladder, TheLimitAnswersWhereItsBoundIsWithinTheTolerance) {
   for (const char* question :
        {"energy-relaxation", "energy-relaxation epsilon=0", "energy-relaxation epsilon=1e-6",
         "energy-relaxation epsilon=0.12", "energy-relaxation epsilon=0.2",
-        "energy-relaxation epsilon=0.499999", "energy-relaxation rho=0.5001",
-        "energy-relaxation rho=0.705", "gas-conduction", "gas-equilibrium estimate=conductivity"}) {
+        "energy-relaxation epsilon=0.499999", "energy-relaxation epsilon=0.5",
+        "energy-relaxation rho=0.5001", "energy-relaxation rho=0.705", "gas-conduction",
+        "gas-equilibrium estimate=conductivity"}) {
     EnsembleSpec spec = Asked(question);
     const double rho = spec.grid[kRho][0];
     const double most = IsOfAGas(spec.experiment) ? GasDeltaBound(rho) : PairDeltaBound(rho);

@@ -67,7 +67,7 @@ TEST(Spec, EveryBadFieldIsAViolation) {
       {kHit + "model: 78", {"spec.model"}},
       {kHit + "experiment: 77", {"spec.experiment"}},
       // A tolerance below the model's own error.
-      {kRelaxation + "target { tolerance: 1e-4 } model: MARKOV", {"spec.target.tolerance"}}};
+      {kRelaxation + "target { tolerance: 1e-4 } model: SPECTRUM", {"spec.target.tolerance"}}};
   for (const Row& row : rows) {
     SCOPED_TRACE(row.spec.substr(0, 200));
     const CheckedSpec checked = CheckSpec(SpecOfText(row.spec));
