@@ -20,6 +20,7 @@ constexpr std::chrono::seconds kBetweenPreparations(30);
 constexpr std::chrono::seconds kLongestBackoff(60);
 constexpr std::chrono::milliseconds kLongestEarlierPause(30'000);
 constexpr std::chrono::seconds kSlowLook(30);
+constexpr int kLooksForThreads = 2, kLooksForAWorker = 10;
 constexpr size_t kMostLaidAtOnce = 300;
 // A worker lists all waiting leases before it takes one.
 constexpr size_t kMostWaiting = 300;
@@ -185,6 +186,7 @@ void FolderExecutor::NoteTaken(const LeaseFileName& file) {
   Laid& laid = found->second;
   if (laid.worker == file.worker) return;
   taken_ += laid.worker.empty();
+  has_workers_ = true;
   laid.worker = file.worker;
   laid.alive = laid.looked = SteadyNow();
   MutexLock lock(mutex_);
@@ -296,7 +298,12 @@ void FolderExecutor::LookAt(Leases::iterator laid) {
 
 // A worker that takes the lease at this moment finds at its first touch that it has lost it.
 void FolderExecutor::LookAtWaiting(Leases::iterator laid) {
-  if (SecondsBetween(laid->second.alive, SteadyNow()) < laid->second.pace.timeout) return;
+  const Clock::time_point now = SteadyNow();
+  const double patience =
+      has_workers_ ? laid->second.pace.timeout : SecondsOf(kLooksForAWorker * options_.look);
+  if (SecondsBetween(laid->second.alive, now) < patience) return;
+  has_workers_ = false;
+  next_laying_ = std::max(next_laying_, now + kLooksForThreads * options_.look);
   files_->Remove(LeaseFileName{laid->first}.Todo()).IgnoreError();
   GiveBack(laid, false);
 }
@@ -342,7 +349,8 @@ absl::Status FolderExecutor::Lay() {
 absl::Status FolderExecutor::LaySome() {
   for (size_t i = 0; i < kMostLaidAtOnce; ++i) {
     const size_t waiting = leases_.size() - taken_;
-    const size_t wanted = std::max(options_.least_waiting, std::min(taken_, kMostWaiting));
+    const size_t wanted =
+        has_workers_ ? std::max(options_.least_waiting, std::min(taken_, kMostWaiting)) : 1;
     const bool has_enough = waiting >= wanted;
     if (has_enough || leases_.size() >= options_.most_leases) break;
     capacity_.seconds = PaceOf(options_, leases_.size()).lease;

@@ -266,6 +266,28 @@ TEST_F(FolderExecutorTest, ASilentWorkerLosesItsLease) {
   ComputeAll(*journal);
 }
 
+TEST_F(FolderExecutorTest, WhileThereIsNoWorkerTheThreadsComputeAndOneLeaseWaits) {
+  Restart(kNoTimeOut);
+  Begin();
+  EXPECT_THAT(In("todo"), SizeIs(2));
+  executor_->Look();
+  EXPECT_THAT(In("todo"), SizeIs(1));
+  Take(In("todo")[0]);
+  executor_->Look();
+  EXPECT_THAT(In("todo"), SizeIs(2));
+}
+
+TEST_F(FolderExecutorTest, LeasesThatNobodyTookAreLaidAgainAfterThreadsHadTheirChoice) {
+  Restart({.timeout = milliseconds(0), .look = std::chrono::hours(1), .least_waiting = 2});
+  const auto journal = Begin();
+  executor_->Look();
+  executor_->Look();
+  EXPECT_THAT(In("todo"), IsEmpty());
+  local_->TakeAllTurns();
+  ASSERT_TRUE(journal->outcome);
+  EXPECT_OK(*journal->outcome);
+}
+
 TEST_F(FolderExecutorTest, AnEmptiedFolderGivesItsLeasesBack) {
   Restart(kNoTimeOut);
   const auto journal = Begin();
