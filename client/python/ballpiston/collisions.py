@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from ballpiston.connection import Connection
 from ballpiston.document import whole_file
-from ballpiston.trace import stream_messages
 from ballpiston.v1 import trace_pb2
 
 Records = npt.NDArray[Any]
@@ -31,13 +30,17 @@ class Collisions:
 
     def __init__(self, connection: Connection, spec: Any) -> None:
         request = trace_pb2.SampleCollisionsRequest(spec=spec)
-        self._messages = stream_messages(connection, request)
+        self._messages = connection.stream_again(request)
 
     def __iter__(self) -> Iterator[Records]:
         return self
 
     def __next__(self) -> Records:
         return _records_of(next(self._messages))
+
+    def close(self) -> None:
+        """Ends the reading before the last collision; the server stops too."""
+        self._messages.close()
 
     def all(self) -> Records:
         """The rest as one array."""
@@ -60,7 +63,8 @@ class Collisions:
 def _records_of(message: Any) -> Records:
     """From the wire format, where a column is its number, its length in bytes and an array of
     little-endian numbers of 8 bytes: ten times as fast as through a list of numbers."""
-    records = np.empty(len(message.sample), _RECORD)
+    # NaN: columns that an older server does not send.
+    records = np.full((len(message.sample), len(_FIELDS)), np.nan).view(_RECORD)[:, 0]
     message.DiscardUnknownFields()  # columns of a newer server
     wire, at = message.SerializeToString(), 0
     while at < len(wire):

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-import grpc
 import numpy as np
 import numpy.typing as npt
 
@@ -17,7 +16,7 @@ from ballpiston.v1 import trace_pb2
 
 def events_of(connection: Connection, request: Any) -> Iterator[dict[str, Any]]:
     """The start, then the events."""
-    for message in stream_messages(connection, request):
+    for message in connection.stream_again(request):
         if message.HasField("start"):
             yield record_of(message.start)
         yield from map(record_of, message.events)
@@ -32,7 +31,7 @@ def columns_of(
         if name not in known:
             raise ValueError(f"an event has no field {name!r}{did_you_mean(name, list(known))}")
     values: dict[str, list[Any]] = {name: [] for name in names}
-    for message in stream_messages(connection, request):
+    for message in connection.stream_again(request):
         for name, column in values.items():
             column.extend(_column(message.events, name, known[name].has_presence))
     arrays = {name: np.array(column) for name, column in values.items()}
@@ -48,26 +47,3 @@ def _column(events: Any, name: str, is_optional: bool) -> list[Any]:
     if is_optional:
         return [getattr(e, name) if e.HasField(name) else np.nan for e in events]
     return [getattr(e, name) for e in events]
-
-
-def stream_messages(connection: Connection, request: Any) -> Iterator[Any]:
-    """The messages of a stream. If the private server stops before the first one arrives, it is
-    started again and asked once more; later a repetition would begin at the start again."""
-    call = connection.open_stream(request)
-    try:
-        try:
-            first = next(call, None)
-        except grpc.RpcError as error:
-            if connection.private is None or error.code() != grpc.StatusCode.UNAVAILABLE:
-                raise
-            connection.revive()
-            call = connection.open_stream(request)
-            first = next(call, None)
-        if first is None:
-            return
-        yield first
-        yield from call
-    except grpc.RpcError as error:
-        raise connection.error_of(error) from None
-    finally:
-        call.cancel()

@@ -13,8 +13,6 @@ import random
 import time
 from typing import Any
 
-import grpc
-
 from ballpiston.connection import Connection
 from ballpiston.errors import Error, Unavailable
 from ballpiston.progress import Progress
@@ -136,15 +134,12 @@ def ended_early() -> Error:
 
 def _read_stream(connection: Connection, watch: Attachments, screen: Progress) -> Error:
     """One stream to its end, and why it ended."""
-    stream = connection.open_stream(watch.request)
     try:
-        for message in stream:
+        for message in connection.stream(watch.request):
             watch.handle(message)
             screen.show(message)
-    except grpc.RpcError as error:
-        return connection.error_of(error)
-    finally:
-        stream.cancel()
+    except Error as error:
+        return error
     return ended_early()
 
 
