@@ -14,7 +14,7 @@ from ballpiston.closed_forms import ClosedForms
 from ballpiston.collisions import Collisions
 from ballpiston.connection import Connection
 from ballpiston.job import Job, check_labels
-from ballpiston.parameter_lists import INT32, INT64, UINT64, Numbers, Shapes, number_list
+from ballpiston.parameter_lists import INT64, UINT64, Numbers, Shapes, number_list
 from ballpiston.parameter_lists import real_number, shape_list, truth_value, whole_number
 from ballpiston.plan import Plan
 from ballpiston.private_server import find_private_server
@@ -29,6 +29,7 @@ from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trac
 
 _COLLECTION = "ensembleJobs/"
 _PAGE = 1000
+_UNLIMITED = 1e9  # seconds
 # The keywords that submit and run have beside those of the question.
 _JOB_KEYWORDS = ("fresh", "priority", "request_id", "labels", "progress")
 
@@ -53,13 +54,13 @@ def connect(
         tls: TLS; with the authorities of this system [BALLPISTON_TLS=1].
         token_file: file with your token, which other users cannot read [BALLPISTON_TOKEN_FILE, or
             the token itself in BALLPISTON_TOKEN]. A token is sent over TLS or to a loopback address.
-        timeout: seconds for each single call; watches and traces have none.
+        timeout: seconds for each single call, above 0, or math.inf; watches and traces have none.
 
     If an argument is not given, the variable in brackets is used, else the config file. Over a Unix
     socket, the private server's too, both are ignored.
 
     Raises:
-        ValueError: not an address, or a file that cannot be used.
+        ValueError: not an address or not a time, or a file that cannot be used.
         PermissionDenied: other users can read the token file.
         NoPrivateServer: the private server cannot be started.
 
@@ -70,11 +71,15 @@ def connect(
         ...     client.status()
     """
     arguments = {"address": address, "ca": ca, "tls": tls, "token_file": token_file}
+    seconds = real_number("timeout", timeout)
+    if not seconds > 0:
+        raise ValueError(f"timeout is {timeout!r} s; permitted: above 0, or math.inf")
+    bound = seconds if seconds < _UNLIMITED else None
     named, security = address_and_security({k: v for k, v in arguments.items() if v is not None})
     if named:
-        return Client(Connection(named, security, timeout=timeout))
+        return Client(Connection(named, security, timeout=bound))
     private = find_private_server()
-    return Client(Connection(private.address(), security, private=private, timeout=timeout))
+    return Client(Connection(private.address(), security, private=private, timeout=bound))
 
 
 class Client:
@@ -99,7 +104,7 @@ class Client:
         return self._connection.address
 
     def close(self) -> None:
-        """Closes the connection. Jobs go on."""
+        """Closes the connection: calls after it raise a ValueError. Jobs go on."""
         self._connection.close()
 
     def __enter__(self) -> Client:
@@ -158,7 +163,7 @@ class Client:
             spec=question_of(experiment, question, _JOB_KEYWORDS),
             request_id=str(request_id or uuid.uuid4()),
             fresh=truth_value("fresh", fresh),
-            priority=whole_number("priority", priority, *INT32),
+            priority=whole_number("priority", priority, -100, 100),
             labels=check_labels(labels),
         )
         return Job(self._connection, self._create(request))
@@ -208,7 +213,7 @@ class Client:
         state: str | Iterable[str] = (),
         experiment: str | Iterable[str] = (),
         labels: Mapping[str, str] | None = None,
-        limit: int | None = 50,
+        limit: int | None = None,
     ) -> list[Job]:
         """Your jobs, the newest first.
 
@@ -248,7 +253,8 @@ class Client:
         beta: Numbers = (),
         temperature: Numbers = (),
     ) -> ClosedForms:
-        """Closed forms at every pair of rho and delta, at most 10,000 pairs. Samples nothing.
+        """Closed forms at every pair of rho and delta, at most 10,000 pairs and 100,000 values.
+        Samples nothing.
 
         Args:
             rho, delta: as in a question.
@@ -320,7 +326,7 @@ class Client:
     @takes_keywords_of(specification)
     def sample(self, experiment: Any, **question: Any) -> Collisions:
         """The collisions of a point's samples, for observables of one's own: those that `run` with
-        the same arguments averages.
+        the same arguments averages, of "equilibrium" with verify=True.
 
         Args:
             experiment: one with a ball-piston pair, with the keywords of

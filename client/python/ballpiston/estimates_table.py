@@ -60,7 +60,7 @@ def _rows(job: Job) -> Iterator[dict[str, Any]]:
     of_job = {
         "job": job.name,
         "labels": " ".join(f"{key}={value}" for key, value in sorted(job.labels.items())),
-        "state": job.state,
+        "state": result.state,
         "experiment": job.experiment,
         "seed": str(job.specification.seed),  # it may have more digits than a float
         "engine_version": job.message.engine_version,

@@ -214,7 +214,10 @@ class Job:
         spec.target.estimate = estimate
         set_target(spec, samples, collisions, tolerance, None)
         request = ensemble_pb2.CreateEnsembleJobRequest(
-            spec=spec, request_id=str(uuid.uuid4()), labels=self.labels
+            spec=spec,
+            request_id=str(uuid.uuid4()),
+            labels=self.labels,
+            priority=self.message.priority,
         )
         return Job(self._connection, self._call(request))
 

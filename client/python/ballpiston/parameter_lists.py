@@ -27,7 +27,6 @@ Numbers = Union[float, str, Iterable[float], "npt.NDArray[np.floating]"]
 Shapes = Union[int, str, Iterable[Union[int, str]]]
 
 # Least and most of the protocol's integers.
-INT32 = (-(2**31), 2**31 - 1)
 INT64 = (-(2**63), 2**63 - 1)
 UINT64 = (0, 2**64 - 1)
 
@@ -64,6 +63,7 @@ def whole_number(name: str, value: object, least: float = -math.inf, most: float
         TypeError: not a number.
         ValueError: a number that is not whole, or not from `least` to `most`.
     """
+    value = _scalar(value)
     if isinstance(value, numbers.Integral) and not isinstance(value, bool):
         number = int(value)
     elif (real := real_number(name, value)).is_integer():
@@ -82,10 +82,11 @@ def real_number(name: str, value: object) -> float:
         TypeError: not a number.
         ValueError: an int beyond the range of double precision.
     """
-    if isinstance(value, (bool, np.bool_)) or not _is_number(value):
+    value = _scalar(value)
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
         raise TypeError(f"{name} has to be a number, not {value!r}")
     try:
-        return float(value)  # type: ignore[arg-type]
+        return float(value)
     except OverflowError:
         raise ValueError(f"{name} exceeds the range of double precision") from None
 
@@ -98,13 +99,13 @@ def truth_value(name: str, value: object) -> bool:
     return bool(value)
 
 
-def _is_number(value: object) -> bool:
-    is_scalar_array = isinstance(value, np.ndarray) and value.ndim == 0
-    return isinstance(value, numbers.Real) or is_scalar_array
+def _scalar(value: object) -> object:
+    """The number in an array without dimensions; any other value as it is."""
+    return value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value
 
 
 def _items(name: str, value: object) -> list[object]:
-    if _is_number(value):
+    if isinstance(value := _scalar(value), numbers.Real):
         return [value]
     if isinstance(value, np.ndarray) and value.ndim != 1:
         raise ValueError(f"{name} has {value.ndim} dimensions; a list of parameters has one")

@@ -58,7 +58,8 @@ def specification(
     most 100,000 points.
 
     Args:
-        experiment: its name, such as "first-hit"; the error of a wrong name lists all names.
+        experiment: "equilibrium", "conditional-mean-free-time", "first-hit", "energy-relaxation",
+            "markov-property", "lyapunov", "gas-equilibrium", "gas-conduction" or "gas-lyapunov".
         rho: radius of the discs; 1/2 < rho < 1/sqrt(2).
         delta: how far the piston reaches into the cell; 0 < delta <= (1 - sqrt(4 rho^2 - 1))/2.
         epsilon: energy of the piston; 0 to 1/2.

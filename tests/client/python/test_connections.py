@@ -8,6 +8,7 @@ import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from conftest import LIMIT, Home, wait_until
@@ -186,6 +187,14 @@ def test_no_program_and_no_server_says_what_to_install(
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(ballpiston.NoPrivateServer, match="install the package ballpiston"):
         find_private_server()
+
+
+@pytest.mark.parametrize("timeout", [0, -3, float("nan"), "3"])
+def test_a_time_limit_is_above_0(timeout: Any) -> None:
+    with pytest.raises((TypeError, ValueError), match="^timeout "):
+        ballpiston.connect(timeout=timeout)
+    with ballpiston.connect(timeout=float("inf")) as client:
+        assert client.jobs(limit=1) is not None
 
 
 def test_a_server_that_does_not_answer_is_named(tmp_path: Path) -> None:
