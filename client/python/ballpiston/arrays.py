@@ -20,8 +20,6 @@ NAME of an angle's histogram ends with _plus or _minus, for sigma +1 and -1. Sho
 curves are padded with NaN. An array that would have no value at all is left out.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Sequence
 from operator import attrgetter

@@ -4,8 +4,6 @@ It is the watch of watch.py over gRPC's asyncio channel. Only what takes a momen
 a private server that has stopped is started again.
 """
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncIterator
 from dataclasses import dataclass

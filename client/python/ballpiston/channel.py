@@ -6,8 +6,6 @@ before a retry, gRPC waits so long. Watches attach again by themselves
 (watch.py).
 """
 
-from __future__ import annotations
-
 import json
 from typing import Any
 
@@ -19,27 +17,16 @@ from ballpiston.server_address import grpc_target
 
 _ENSEMBLES = "ballpiston.v1.EnsembleService"
 
-# The second entry has no retry policy, and a method's own entry wins over the default.
-_SERVICE_CONFIG = {
-    "methodConfig": [
-        {
-            "name": [{}],
-            "retryPolicy": {
-                "maxAttempts": 4,
-                "initialBackoff": "0.1s",
-                "maxBackoff": "1s",
-                "backoffMultiplier": 2,
-                "retryableStatusCodes": ["UNAVAILABLE", "CANCELLED"],
-            },
-        },
-        {
-            "name": [
-                {"service": _ENSEMBLES, "method": "WatchEnsembleJob"},
-                {"service": _ENSEMBLES, "method": "DeleteEnsembleJob"},
-            ]
-        },
-    ]
+_RETRIES = {
+    "maxAttempts": 4,
+    "initialBackoff": "0.1s",
+    "maxBackoff": "1s",
+    "backoffMultiplier": 2,
+    "retryableStatusCodes": ["UNAVAILABLE", "CANCELLED"],
 }
+# A method's own entry wins over the default: these are not retried.
+_ONCE = [{"service": _ENSEMBLES, "method": f"{verb}EnsembleJob"} for verb in ("Watch", "Delete")]
+_SERVICE_CONFIG = {"methodConfig": [{"name": [{}], "retryPolicy": _RETRIES}, {"name": _ONCE}]}
 
 _ARGUMENTS: list[tuple[str, int | str]] = [
     ("grpc.primary_user_agent", f"ballpiston/{__version__} (python)"),

@@ -12,8 +12,6 @@ only its user can read, in a folder for each machine that shares the user's home
     $XDG_STATE_HOME/ballpiston/tokens/MACHINE/127.0.0.1:50051    (~/.local/state if it is not set)
 """
 
-from __future__ import annotations
-
 import os
 import socket
 import stat

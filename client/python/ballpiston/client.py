@@ -5,13 +5,12 @@ from __future__ import annotations
 import sys
 import uuid
 from collections.abc import Iterable, Iterator, Mapping
-from types import TracebackType
 from typing import Any
 
 import numpy.typing as npt
 
 from ballpiston.closed_forms import ClosedForms
-from ballpiston.collisions import Collisions
+from ballpiston.collisions import Collisions, columns_of, events_of
 from ballpiston.connection import Connection
 from ballpiston.job import Job, check_labels
 from ballpiston.parameter_lists import INT64, UINT64, Numbers, Shapes, number_list
@@ -24,7 +23,6 @@ from ballpiston.settings import address_and_security
 from ballpiston.server_status import ServerStatus, server_status_of
 from ballpiston.specification import question_of, specification, takes_keywords_of
 from ballpiston.spelling import from_spelling
-from ballpiston.trace import columns_of, events_of
 from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trace_pb2
 
 _COLLECTION = "ensembleJobs/"
@@ -87,12 +85,6 @@ class Client:
 
     It may be shared between threads. As a context manager it closes the connection at the end; jobs
     go on.
-
-    Example:
-        >>> with ballpiston.connect() as client:
-        ...     result = client.run("first-hit", rho=0.5296, delta=[0.1, 0.05], epsilon=0.125,
-        ...                         exponent=[1, 2], samples=1e5, seed=7)
-        >>> result["mean_hit_time"]
     """
 
     def __init__(self, connection: Connection) -> None:
@@ -110,12 +102,7 @@ class Client:
     def __enter__(self) -> Client:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def __repr__(self) -> str:
@@ -166,7 +153,15 @@ class Client:
             priority=whole_number("priority", priority, -100, 100),
             labels=check_labels(labels),
         )
-        return Job(self._connection, self._create(request))
+        try:
+            return Job(self._connection, self._connection.call(request))
+        except KeyboardInterrupt:
+            print(
+                "The server may have accepted the job. With "
+                f'request_id="{request.request_id}" the same call returns this job.',
+                file=sys.stderr,
+            )
+            raise
 
     @takes_keywords_of(submit)
     def run(self, experiment: Any, *, progress: bool | str = True, **question: Any) -> Result:
@@ -302,9 +297,8 @@ class Client:
             >>> events = client.trace(rho=0.5296, delta=0.2, events=1000)
             >>> pandas.DataFrame(events).groupby("event")["free_time"].mean()
         """
-        return events_of(
-            self._connection, _orbit_request(rho, delta, events, seed, cells, temperature)
-        )
+        orbit = _orbit_request(rho, delta, events, seed, cells, temperature)
+        return events_of(self._connection, orbit)
 
     @takes_keywords_of(trace)
     def trace_arrays(self, *fields: str, **orbit: Any) -> dict[str, npt.NDArray[Any]]:
@@ -345,19 +339,6 @@ class Client:
         second, because the server measures its speed."""
         message = self._connection.call(server_pb2.GetServerStatusRequest())
         return server_status_of(self.address, message)
-
-    def _create(self, request: Any) -> Any:
-        """One request id for all attempts: a server that accepted the job and stopped before it
-        could answer does not get a second one."""
-        try:
-            return self._connection.call(request)
-        except KeyboardInterrupt:
-            print(
-                "The server may have accepted the job. With "
-                f'request_id="{request.request_id}" the same call returns this job.',
-                file=sys.stderr,
-            )
-            raise
 
 
 def _numbers_of(enum: Any, what: str, names: str | Iterable[str]) -> list[int]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ballpiston.fields import FloatArray, column
-from ballpiston.suggestion import no_such
+from ballpiston.spelling import no_such
 from ballpiston.v1 import analytic_pb2
 
 if TYPE_CHECKING:

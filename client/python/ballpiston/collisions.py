@@ -1,8 +1,7 @@
-"""The collisions of a point's samples as NumPy arrays: the raw data behind its estimates."""
+"""Raw data: an orbit of the reference billiard, event by event, and the collisions of a point's
+samples behind its estimates."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,8 @@ import numpy.typing as npt
 
 from ballpiston.connection import Connection
 from ballpiston.document import whole_file
+from ballpiston.fields import record_of
+from ballpiston.spelling import did_you_mean
 from ballpiston.v1 import trace_pb2
 
 Records = npt.NDArray[Any]
@@ -83,3 +84,38 @@ def _varint(wire: bytes, at: int) -> tuple[int, int]:
         shift += 7
         at += 1
     return value | wire[at] << shift, at + 1
+
+
+def events_of(connection: Connection, request: Any) -> Iterator[dict[str, Any]]:
+    """The start, then the events."""
+    for message in connection.stream_again(request):
+        if message.HasField("start"):
+            yield record_of(message.start)
+        yield from map(record_of, message.events)
+
+
+def columns_of(
+    connection: Connection, request: Any, names: Sequence[str]
+) -> dict[str, npt.NDArray[Any]]:
+    """Fields of all events as arrays, for orbits that are too long for dicts."""
+    known = trace_pb2.TraceEvent.DESCRIPTOR.fields_by_name
+    for name in names:
+        if name not in known:
+            raise ValueError(f"an event has no field {name!r}{did_you_mean(name, list(known))}")
+    values: dict[str, list[Any]] = {name: [] for name in names}
+    for message in connection.stream_again(request):
+        for name, column in values.items():
+            column.extend(_column(message.events, name, known[name].has_presence))
+    arrays = {name: np.array(column) for name, column in values.items()}
+    if "event" in arrays:
+        kinds = trace_pb2.TraceEvent.Kind
+        arrays["event"] = np.array([kinds.Name(k) for k in range(len(kinds.keys()))])[
+            arrays["event"]
+        ]
+    return arrays
+
+
+def _column(events: Any, name: str, is_optional: bool) -> list[Any]:
+    if is_optional:
+        return [getattr(e, name) if e.HasField(name) else np.nan for e in events]
+    return [getattr(e, name) for e in events]

@@ -5,8 +5,6 @@ A private server may stop, idle, just as a call arrives, or be killed: then it i
 the call is repeated once. So every call that goes through `call` has to be safe to repeat.
 """
 
-from __future__ import annotations
-
 import _thread
 import queue
 import sys
@@ -57,7 +55,7 @@ class Connection:
         # Also at the interpreter's exit: gRPC's own destructor comes after its threads were killed,
         # and would wait forever for a lock that one of them held.
         self.close = weakref.finalize(self, self.channel.close)
-        self._methods: dict[str, Callable[..., Any]] = {}
+        self._methods: dict[str, Any] = {}
         for service in _SERVICES:
             self._methods |= vars(service(self.channel))
 
@@ -148,7 +146,7 @@ class Connection:
         self.revive()
         return attempt()
 
-    def _method_of(self, request: Any) -> Callable[..., Any]:
+    def _method_of(self, request: Any) -> Any:
         return self._methods[type(request).__name__.removesuffix("Request")]
 
 

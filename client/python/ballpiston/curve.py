@@ -1,7 +1,5 @@
 """Curves of a point: functions of time, or of the position in a gas."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -9,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ballpiston.fields import FloatArray, column
-from ballpiston.suggestion import no_such
+from ballpiston.spelling import no_such
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,8 +11,6 @@ Messages have the protocol's own field names; fields with their default value ar
 64-bit integers are strings, as JSON of Protocol Buffers has it.
 """
 
-from __future__ import annotations
-
 import functools
 import inspect
 import json

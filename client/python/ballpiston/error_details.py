@@ -10,8 +10,6 @@ request is wrong, a BadRequest with every violation. The text is that of the pro
       and M more                            if the server left some out
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, field
 from typing import Any, TypeVar

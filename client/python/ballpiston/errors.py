@@ -10,8 +10,6 @@ Mistakes in a call itself, such as a wrong keyword or a text in place of a numbe
 ValueError. They are raised before anything is sent.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 

@@ -1,7 +1,5 @@
 """The estimates of many jobs in one table: a row for each estimate of each point."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable, Iterator
 from typing import Any

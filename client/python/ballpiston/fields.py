@@ -1,14 +1,13 @@
 """The fields of messages, as Python values and as NumPy arrays."""
 
-from __future__ import annotations
-
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+Value = TypeVar("Value")
 
 
 def value_of(message: Any, name: str) -> Any:
@@ -18,6 +17,12 @@ def value_of(message: Any, name: str) -> Any:
     field = message.DESCRIPTOR.fields_by_name[name]
     is_absent = field.has_presence and not message.HasField(name)
     return None if is_absent else getattr(message, name)
+
+
+def shown(name: str, kind: Callable[[Any], Value], doc: str) -> Value:
+    """A property: the field of this name in `self.message`, as a value of this kind."""
+    found = property(lambda self: kind(value_of(self.message, name)), doc=doc)
+    return found  # type: ignore[return-value]
 
 
 def column(messages: Iterable[Any], name: str) -> FloatArray:

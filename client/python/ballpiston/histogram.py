@@ -1,7 +1,5 @@
 """Histograms of a point, and how one of them is chosen."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -9,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ballpiston.fields import FloatArray, value_of
-from ballpiston.suggestion import no_such
+from ballpiston.spelling import no_such
 
 
 @dataclass(frozen=True, eq=False)

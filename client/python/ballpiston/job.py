@@ -8,13 +8,13 @@ import sys
 import uuid
 from collections.abc import AsyncIterator, Mapping
 from datetime import datetime, timezone
-from typing import Any
+from typing import Any, cast
 
 from ballpiston.async_watch import Update, watch_updates
 from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
 from ballpiston.errors import Error, NotFound, ResultsExpired
-from ballpiston.fields import value_of
+from ballpiston.fields import shown
 from ballpiston.progress import Progress, fraction_of, progress_on_screen
 from ballpiston.result import Result
 from ballpiston.result_table import html_table
@@ -35,6 +35,11 @@ def check_labels(labels: Mapping[str, str] | None) -> Mapping[str, str] | None:
         if not (isinstance(key, str) and isinstance(value, str)):
             raise TypeError(f'labels: {key!r}: {value!r} is not a pair of texts like "run": "7"')
     return labels
+
+
+def utc(time: Any) -> datetime | None:
+    """The time of a Timestamp."""
+    return None if time is None else cast(datetime, time.ToDatetime(timezone.utc))
 
 
 class JobNotSucceeded(Error):
@@ -72,13 +77,15 @@ class Job:
         # The server says so in the answer to the submission only.
         self._is_from_store = bool(message.answered_from_store)
 
-    # ---- properties ----
-
-    @property
-    def name(self) -> str:
-        """ensembleJobs/ID: with it `client.job(name)` finds the job again, also from another
-        process."""
-        return str(self.message.name)
+    name = shown("name", str, "ensembleJobs/ID: by it `client.job(name)` finds the job again.")
+    pinned = shown("pinned", bool, "Whether its results do not expire.")
+    labels: dict[str, str] = shown(
+        "labels", dict, "Short texts by which `client.jobs(labels=...)` finds it."
+    )
+    created = shown("create_time", utc, "When the server accepted it, in UTC.")
+    started = shown("start_time", utc, "When a worker began it; None before that.")
+    ended = shown("end_time", utc, "When it ended; None before that.")
+    continues = shown("continues", str, "The name of the job whose points it continues, or empty.")
 
     @property
     def specification(self) -> Any:
@@ -118,37 +125,7 @@ class Job:
         """Whether this job existed before it was submitted, and answered the same question."""
         return self._is_from_store
 
-    @property
-    def pinned(self) -> bool:
-        """Whether its results do not expire."""
-        return bool(self.message.pinned)
-
-    @property
-    def labels(self) -> dict[str, str]:
-        """Short texts by which `client.jobs(labels=...)` finds it."""
-        return dict(self.message.labels)
-
-    @property
-    def created(self) -> datetime | None:
-        """When the server accepted it, in UTC."""
-        return self._time("create_time")
-
-    @property
-    def started(self) -> datetime | None:
-        """When a worker began it; None before that."""
-        return self._time("start_time")
-
-    @property
-    def ended(self) -> datetime | None:
-        """When it ended; None before that."""
-        return self._time("end_time")
-
-    @property
-    def continues(self) -> str:
-        """The name of the job whose points it continues, or empty."""
-        return str(self.message.continues)
-
-    # ---- actions ----
+    # Actions
 
     def refresh(self) -> Job:
         """Asks the server for the job as it is now."""
@@ -383,10 +360,6 @@ class Job:
         error = error_of(error_class, text, details_of(status), "")
         error.job = self
         raise error
-
-    def _time(self, field: str) -> datetime | None:
-        time = value_of(self.message, field)
-        return None if time is None else time.ToDatetime(timezone.utc)
 
 
 def _farewell(job: Job) -> str:

@@ -10,21 +10,26 @@ A text gives the same doubles as the command line: inner numbers of from:to:coun
 digits, so that "0.01:0.49:49" has the doubles that are nearest to its decimal fractions. The
 numbers of np.linspace may differ from them in the last bit.
 
-Only the form is checked here. The server judges the values.
+A table of points has a row for each point and a column for each parameter. Only the form is checked
+here. The server judges the values.
 """
-
-from __future__ import annotations
 
 import math
 import numbers
 from collections.abc import Iterable, Mapping
-from typing import Union
+from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
 
+from ballpiston.point import PARAMETERS
+from ballpiston.spelling import did_you_mean
+
 Numbers = Union[float, str, Iterable[float], "npt.NDArray[np.floating]"]
 Shapes = Union[int, str, Iterable[Union[int, str]]]
+
+# A pandas.DataFrame, a mapping of columns, or an iterable of rows that are mappings.
+Points = Any
 
 # Least and most of the protocol's integers.
 INT64 = (-(2**63), 2**63 - 1)
@@ -176,3 +181,48 @@ def _chain(name: str, value: object) -> str:
     if not math.isfinite(number) or abs(number - round(number)) > 1e-12 * abs(number):
         raise ValueError(f"{name} has to have whole numbers, not {value!r}")
     return str(round(number))
+
+
+def add_points(points: Points, grid: Any) -> None:
+    """Adds the columns to the lists of a Grid, and their names to its table.
+
+    Raises:
+        TypeError: not a table, or a column that is also given as a list.
+        ValueError: an unknown column, a row that lacks a column, or no row.
+    """
+    columns = _columns(points)
+    if not columns or any(len(values) == 0 for values in columns.values()):
+        raise ValueError("points has no row")
+    for name, values in columns.items():
+        if name not in PARAMETERS:
+            hint = did_you_mean(str(name), PARAMETERS)
+            raise ValueError(f"points: {name!r} is not a parameter{hint}")
+        if len(getattr(grid, name)) > 0:
+            raise TypeError(f"points has the column {name}, and {name} is given: give one of them")
+        of_column = f"points, column {name}"
+        if name == "cells":
+            grid.cells.extend(shape_list(of_column, values))
+        else:
+            getattr(grid, name).extend(number_list(of_column, values))
+        grid.table.append(name)
+
+
+def _columns(points: Points) -> dict[str, list[Any]]:
+    if isinstance(points, Mapping) or hasattr(points, "columns"):
+        for name in points:
+            if not isinstance(points[name], Iterable):
+                raise TypeError(f"points, column {name} has to be a list, not {points[name]!r}")
+        return {name: list(points[name]) for name in points}
+    rows = list(points) if isinstance(points, Iterable) else [points]
+    if not all(isinstance(row, Mapping) for row in rows):
+        raise TypeError(
+            "points has to be a pandas.DataFrame, a dict of columns or a list of dicts, not "
+            + type(points).__name__
+        )
+    names = list(rows[0]) if rows else []
+    for number, row in enumerate(rows):
+        if set(row) != set(names):
+            raise ValueError(
+                f"points, row {number}: has the keys {', '.join(row)}; row 0 has {', '.join(names)}"
+            )
+    return {name: [row[name] for row in rows] for name in names}

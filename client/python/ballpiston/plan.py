@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ballpiston.result_table import html_table
-from ballpiston.fields import value_of
+from ballpiston.fields import shown, value_of
 from ballpiston.spelling import spelled
 
 if TYPE_CHECKING:
@@ -22,28 +22,15 @@ class Plan:
             points it has as many, evenly spread.
     """
 
+    points = shown("point_count", int, "Of the grid.")
+    work = shown("work", float, "Seconds of processor time for the whole job.")
+    time = shown("time", float, "Seconds by the clock, if the server did nothing else.")
+    memory = shown(
+        "memory", float, "Bytes that the largest point needs with all workers; an upper bound."
+    )
+
     def __init__(self, message: Any) -> None:
         self.message = message
-
-    @property
-    def points(self) -> int:
-        """Of the grid."""
-        return int(self.message.point_count)
-
-    @property
-    def work(self) -> float:
-        """Seconds of processor time for the whole job."""
-        return float(self.message.work)
-
-    @property
-    def time(self) -> float:
-        """Seconds by the clock, if the server did nothing else."""
-        return float(self.message.time)
-
-    @property
-    def memory(self) -> float:
-        """Bytes that the point needs that needs most, with all workers; an upper bound."""
-        return float(self.message.memory)
 
     @property
     def models(self) -> list[str]:
@@ -63,10 +50,7 @@ class Plan:
         return pandas.DataFrame(self._rows())
 
     def __repr__(self) -> str:
-        lines = [
-            f" {mark:1} {model:<18} {work:>9}  {remark}"
-            for mark, model, work, remark in self._shown()
-        ]
+        lines = [" {:1} {:<18} {:>9}  {}".format(*row) for row in self._shown()]
         return "\n".join([self._heading(), *lines])
 
     def _repr_html_(self) -> str:
@@ -74,15 +58,11 @@ class Plan:
 
     def _shown(self) -> list[tuple[str, str, str, str]]:
         """The first rows: a mark of the chosen model, the model, its work and a remark."""
-        return [
-            (
-                ">" if row["chosen"] else "",
-                row["model"],
-                f"{row['work']:.2g} s" if "work" in row else "",
-                row["reason"],
-            )
-            for row in self._rows()[:_MOST_ROWS]
-        ]
+        shown = []
+        for row in self._rows()[:_MOST_ROWS]:
+            work = f"{row['work']:.2g} s" if "work" in row else ""
+            shown.append((">" if row["chosen"] else "", row["model"], work, row["reason"]))
+        return shown
 
     def _heading(self) -> str:
         models = ", ".join(dict.fromkeys(self.models))

@@ -6,8 +6,6 @@ address, and starts it first if it does not run. So notebooks and the command li
 and its stored answers, in $XDG_STATE_HOME/ballpiston or ~/.local/state/ballpiston.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -3,8 +3,6 @@
 tqdm draws it if tqdm is installed. Where nobody looks, in a pipeline for instance, there is no bar.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 import sys

@@ -1,14 +1,11 @@
 """Tables for terminals and notebooks: a result with one row for each point, and rows of any kind as
 HTML."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
 
-from ballpiston.number_text import measured_text
-from ballpiston.point import Point
+from ballpiston.point import Point, measured_text
 
 _MOST_ROWS = 20
 

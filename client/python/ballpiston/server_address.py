@@ -4,8 +4,6 @@
     unix:PATH    a Unix domain socket
 """
 
-from __future__ import annotations
-
 import ipaddress
 import re
 

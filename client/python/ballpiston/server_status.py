@@ -1,7 +1,5 @@
 """What a server is doing, and what it permits."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -40,17 +38,11 @@ class ServerStatus:
 
 def server_status_of(address: str, message: Any) -> ServerStatus:
     """Of a message ballpiston.v1.ServerStatus."""
+    same = ("version", "engine_version", "workers", "busy_workers", "queued_jobs", "running_jobs")
     return ServerStatus(
         address=address,
         state=spelled(message, "state"),
-        version=message.version,
-        engine_version=message.engine_version,
-        workers=message.workers,
-        busy_workers=message.busy_workers,
-        queued_jobs=int(message.queued_jobs),
-        running_jobs=int(message.running_jobs),
-        principal=message.principal,
-        role=message.role,
         limits=record_of(message.limits),
         message=message,
+        **{name: getattr(message, name) for name in (*same, "principal", "role")},
     )

@@ -9,8 +9,6 @@ file of the command line, ~/.config/ballpiston/config.toml.
                   BALLPISTON_TOKEN
 """
 
-from __future__ import annotations
-
 import os
 import tomllib
 from collections.abc import Mapping
@@ -20,18 +18,10 @@ from typing import Any
 from ballpiston.channel_security import ChannelSecurity
 from ballpiston.server_address import is_socket
 
+_KEYS = {"address": "server", "ca": "ca", "tls": "tls", "token_file": "token-file"}
 _VARIABLES = {
-    "address": "BALLPISTON_SERVER",
-    "ca": "BALLPISTON_CA",
-    "tls": "BALLPISTON_TLS",
-    "token_file": "BALLPISTON_TOKEN_FILE",
-    "token": "BALLPISTON_TOKEN",
-}
-_KEYS = {
-    "address": "server",
-    "ca": "ca",
-    "tls": "tls",
-    "token_file": "token-file",
+    name: "BALLPISTON_" + key.upper().replace("-", "_")
+    for name, key in (_KEYS | {"token": "token"}).items()
 }
 _TRUE = ("1", "true", "yes", "on", "enable")
 _FALSE = ("", "0", "false", "no", "off", "disable")

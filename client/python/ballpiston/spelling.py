@@ -1,10 +1,9 @@
-"""Names of the protocol as users write them: FIRST_HIT is first-hit; first_hit is read as well."""
+"""Names of the protocol as users write them: FIRST_HIT is first-hit; first_hit is read as well. And
+messages about names that do not exist."""
 
-from __future__ import annotations
-
+import difflib
+from collections.abc import Iterable
 from typing import Any
-
-from ballpiston.suggestion import did_you_mean
 
 
 def spelling_of_name(name: str) -> str:
@@ -38,3 +37,16 @@ def from_spelling(enum: Any, what: str, text: object) -> int:
         f"{text!r} is not a value of {what}{did_you_mean(wanted, numbers)}; "
         f"the values are {', '.join(numbers)}"
     )
+
+
+def did_you_mean(name: str, names: Iterable[str]) -> str:
+    """'; did you mean NAME?', or nothing if no name is near."""
+    near = difflib.get_close_matches(name, list(names), n=1)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def no_such(what: str, name: str, owner: str, names: Iterable[str]) -> str:
+    """The message that `owner` has no `what` of this name, with the names that `owner` has."""
+    names = list(dict.fromkeys(names))
+    there = ", ".join(names) or "none"
+    return f"there is no {what} {name!r}{did_you_mean(name, names)}; {owner} has {there}"

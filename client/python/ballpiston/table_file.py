@@ -1,7 +1,5 @@
 """Named columns in a file: .csv, .npz or .parquet, by its ending."""
 
-from __future__ import annotations
-
 import csv
 import io
 from pathlib import Path

@@ -7,8 +7,6 @@ stops, by RESOURCE_EXHAUSTED with a reason, as from a server that is busy, and b
 terminal state. Every other error ends the watch.
 """
 
-from __future__ import annotations
-
 import random
 import time
 from typing import Any

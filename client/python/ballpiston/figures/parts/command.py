@@ -22,8 +22,8 @@ from ballpiston.figures import names
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.tables import Tables
 from ballpiston.parameter_lists import INT64, UINT64, number_list, whole_number
-from ballpiston.program import run_program
-from ballpiston.suggestion import did_you_mean
+from ballpiston.command import run_program
+from ballpiston.spelling import did_you_mean
 from ballpiston.table_file import write_table
 
 # What --help says about the keywords of `measure`.
