@@ -15,11 +15,9 @@ The messages and stubs of the protocol are in ballpiston.v1.
 """
 
 from ballpiston._version import __version__
-from ballpiston.async_watch import Update
 from ballpiston.client import Client, connect
 from ballpiston.closed_forms import ClosedForms
 from ballpiston.collisions import Collisions
-from ballpiston.curve import Curve
 from ballpiston.errors import (
     DataLoss,
     DeadlineExceeded,
@@ -36,13 +34,14 @@ from ballpiston.errors import (
     Unavailable,
 )
 from ballpiston.estimates_table import estimates_table
-from ballpiston.histogram import Histogram
+from ballpiston.histogram import Curve, Histogram
 from ballpiston.job import Job, JobCancelled, JobFailed, JobNotSucceeded
 from ballpiston.plan import Plan
 from ballpiston.point import Estimate, Point
 from ballpiston.result import Result, load
 from ballpiston.server_status import ServerStatus
 from ballpiston.specification import specification
+from ballpiston.watch import Update
 
 # fmt: off
 __all__ = [

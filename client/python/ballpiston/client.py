@@ -12,17 +12,17 @@ import numpy.typing as npt
 from ballpiston.closed_forms import ClosedForms
 from ballpiston.collisions import Collisions, columns_of, events_of
 from ballpiston.connection import Connection
+from ballpiston.fields import from_spelling
 from ballpiston.job import Job, check_labels
 from ballpiston.parameter_lists import INT64, UINT64, Numbers, Shapes, number_list
 from ballpiston.parameter_lists import real_number, shape_list, truth_value, whole_number
 from ballpiston.plan import Plan
-from ballpiston.private_server import find_private_server
 from ballpiston.progress import progress_on_screen
 from ballpiston.result import Result
-from ballpiston.settings import address_and_security
+from ballpiston.server_address import find_private_server
 from ballpiston.server_status import ServerStatus, server_status_of
+from ballpiston.settings import address_and_security
 from ballpiston.specification import question_of, specification, takes_keywords_of
-from ballpiston.spelling import from_spelling
 from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trace_pb2
 
 _COLLECTION = "ensembleJobs/"
@@ -61,12 +61,6 @@ def connect(
         ValueError: not an address or not a time, or a file that cannot be used.
         PermissionDenied: other users can read the token file.
         NoPrivateServer: the private server cannot be started.
-
-    Example:
-        >>> client = ballpiston.connect()
-        >>> with ballpiston.connect("lab.example.org:50051", ca="authority.pem",
-        ...                         token_file="ada.token") as client:
-        ...     client.status()
     """
     arguments = {"address": address, "ca": ca, "tls": tls, "token_file": token_file}
     seconds = real_number("timeout", timeout)
@@ -140,11 +134,6 @@ class Client:
             TypeError: a keyword that does not exist; the message suggests the nearest one.
             InvalidSpecification: wrong values; `violations` lists all of them.
             ResourceExhausted: a limit of the server.
-
-        Example:
-            >>> job = client.submit("equilibrium", rho=0.5296, delta="0.05:0.2:4",
-            ...                     collisions=1e5, model="billiard")
-            >>> job.watch()["mean_free_time_ball_piston"]
         """
         request = ensemble_pb2.CreateEnsembleJobRequest(
             spec=question_of(experiment, question, _JOB_KEYWORDS),
@@ -179,12 +168,7 @@ class Client:
 
     @takes_keywords_of(specification)
     def plan(self, experiment: Any, **question: Any) -> Plan:
-        """What a question would cost with each model, and which model would answer. Runs nothing.
-
-        Example:
-            >>> client.plan("energy-relaxation", rho=0.5296, delta=0.0125,
-            ...             tolerance=0.01)
-        """
+        """What a question would cost with each model, and which one would answer. Runs nothing."""
         request = ensemble_pb2.PlanEnsembleJobRequest(spec=question_of(experiment, question))
         return Plan(self._connection.call(request))
 

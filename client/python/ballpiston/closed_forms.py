@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ballpiston.fields import FloatArray, column
-from ballpiston.spelling import no_such
+from ballpiston.fields import FloatArray, column, no_such
 from ballpiston.v1 import analytic_pb2
 
 if TYPE_CHECKING:

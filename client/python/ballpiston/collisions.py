@@ -10,8 +10,7 @@ import numpy.typing as npt
 
 from ballpiston.connection import Connection
 from ballpiston.document import whole_file
-from ballpiston.fields import record_of
-from ballpiston.spelling import did_you_mean
+from ballpiston.fields import did_you_mean, record_of
 from ballpiston.v1 import trace_pb2
 
 Records = npt.NDArray[Any]

@@ -12,17 +12,15 @@ import threading
 import time
 import weakref
 from collections.abc import Callable, Generator
+from contextlib import suppress
 from typing import Any
 
 import grpc
 
-from ballpiston.channel import open_channel
-from ballpiston.channel_security import ChannelSecurity, Token
-from ballpiston.connection_hint import connection_hint
+from ballpiston.channel import ChannelSecurity, Token, connection_hint, open_channel
 from ballpiston.error_details import from_rpc_error
 from ballpiston.errors import Error, Unavailable
-from ballpiston.private_server import PrivateServer
-from ballpiston.server_address import literal_address
+from ballpiston.server_address import PrivateServer, literal_address
 from ballpiston.v1.analytic_pb2_grpc import AnalyticServiceStub
 from ballpiston.v1.ensemble_pb2_grpc import EnsembleServiceStub
 from ballpiston.v1.server_pb2_grpc import ServerServiceStub
@@ -34,9 +32,8 @@ _REVIVE_SECONDS = 10.0
 
 class Connection:
     """A channel to the server at `address`. `private`: the server is the user's private one, and
-    may be started again. `timeout` bounds each single call, in seconds; None: no bound. Safe to share between
-    threads.
-    """
+    may be started again. `timeout` bounds each single call, in seconds; None: no bound. Safe to
+    share between threads."""
 
     def __init__(
         self,
@@ -128,12 +125,9 @@ class Connection:
 
     def _wait_until_connected(self, longest: float) -> None:
         ready = grpc.channel_ready_future(self.channel)
-        try:
+        with suppress(grpc.FutureTimeoutError):
             ready.result(timeout=longest)
-        except grpc.FutureTimeoutError:
-            pass
-        finally:
-            ready.cancel()
+        ready.cancel()
 
     def _repeated(self, attempt: Callable[[], Any]) -> Any:
         """What the attempt returns, or a second one after the private server was started again."""

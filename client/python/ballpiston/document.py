@@ -8,11 +8,14 @@
     ]}
 
 Messages have the protocol's own field names; fields with their default value are written too;
-64-bit integers are strings, as JSON of Protocol Buffers has it.
+64-bit integers are strings, as JSON of Protocol Buffers has it. And tables: files of named columns,
+.csv, .npz or .parquet.
 """
 
+import csv
 import functools
 import inspect
+import io
 import json
 import os
 import stat
@@ -22,6 +25,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
 from google.protobuf import json_format
 from google.protobuf.descriptor import FieldDescriptor
 
@@ -34,6 +39,7 @@ _DEFAULTS_OPTION = (
     if "including_default_value_fields" in inspect.signature(json_format.MessageToDict).parameters
     else "always_print_fields_with_no_presence"
 )
+Table = dict[str, npt.NDArray[Any]]
 _ZIP_MAGIC = b"PK\x03\x04"
 
 
@@ -106,6 +112,44 @@ def whole_file(path: Path) -> Iterator[Path]:
         raise
 
 
+def write_table(path: Path, table: Table, comment: str = "") -> None:
+    """Writes the whole file or none. A .csv file has all digits, and an empty cell for NaN. If
+    there is a comment, it is the first line, after a #.
+
+    Raises:
+        ModuleNotFoundError: .parquet needs pandas and pyarrow.
+    """
+    with whole_file(path) as part:
+        if path.suffix == ".csv":
+            with part.open("w", newline="", encoding="utf-8") as file:
+                file.write(f"# {comment}\n" if comment else "")
+                writer = csv.writer(file, lineterminator="\n")
+                writer.writerow(table)
+                for row in zip(*(column.tolist() for column in table.values())):
+                    writer.writerow(map(_cell, row))
+        elif path.suffix == ".npz":
+            part.write_bytes(npz_of(table))
+        else:
+            import pandas
+
+            pandas.DataFrame(table).to_parquet(part, index=False)
+
+
+def npz_of(table: Table) -> memoryview:
+    """The bytes of an .npz file, made in memory: an archive in a file would write to it again
+    after a failed write, when Python destroys the archive."""
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **table)
+    return buffer.getbuffer()
+
+
+def _cell(value: Any) -> Any:
+    """The content of the cell: 64 for 64.0, empty for NaN."""
+    if not isinstance(value, float):
+        return value
+    return "" if np.isnan(value) else repr(value).removesuffix(".0")
+
+
 @functools.cache
 def _fields_of(message: Any) -> Callable[[dict[str, Any]], dict[str, Any]]:
     """Returns a function that converts a message's JSON to the arguments of its constructor.
@@ -132,9 +176,10 @@ def _reader_of(field: Any) -> Callable[[Any], Any]:
         FieldDescriptor.CPPTYPE_DOUBLE: float,  # for instance "NaN"
     }
     is_message = field.type == FieldDescriptor.TYPE_MESSAGE
-    read = _fields_of(field.message_type) if is_message else numbers.get(field.cpp_type, _same)
+    as_it_is: Callable[[Any], Any] = lambda value: value
+    read = _fields_of(field.message_type) if is_message else numbers.get(field.cpp_type, as_it_is)
     if field.label == FieldDescriptor.LABEL_REPEATED:
-        return lambda values: [read(value) for value in values]
+        return lambda values: list(map(read, values))
     return read
 
 
@@ -144,10 +189,6 @@ def _integer(value: Any) -> int:
     if number != value and not isinstance(value, str):
         raise ValueError(f"{value} is not an integer")
     return number
-
-
-def _same(value: Any) -> Any:
-    return value
 
 
 def _current_umask() -> int:

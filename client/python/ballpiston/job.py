@@ -7,21 +7,21 @@ import os
 import sys
 import uuid
 from collections.abc import AsyncIterator, Mapping
+from contextlib import closing, suppress
 from datetime import datetime, timezone
+from operator import attrgetter
 from typing import Any, cast
 
-from ballpiston.async_watch import Update, watch_updates
 from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
 from ballpiston.errors import Error, NotFound, ResultsExpired
-from ballpiston.fields import shown
-from ballpiston.progress import Progress, fraction_of, progress_on_screen
+from ballpiston.fields import shown, spelled, value_of
+from ballpiston.progress import fraction_of, progress_on_screen
 from ballpiston.result import Result
 from ballpiston.result_table import html_table
 from ballpiston.specification import set_target
-from ballpiston.spelling import spelled
 from ballpiston.v1 import ensemble_pb2, spec_pb2
-from ballpiston.watch import has_ended, watch_job
+from ballpiston.watch import Update, has_ended, watch_job, watch_updates
 
 _PAGE = 1000
 _GLANCE_SECONDS = 2.0  # for a notebook that shows a job
@@ -35,11 +35,6 @@ def check_labels(labels: Mapping[str, str] | None) -> Mapping[str, str] | None:
         if not (isinstance(key, str) and isinstance(value, str)):
             raise TypeError(f'labels: {key!r}: {value!r} is not a pair of texts like "run": "7"')
     return labels
-
-
-def utc(time: Any) -> datetime | None:
-    """The time of a Timestamp."""
-    return None if time is None else cast(datetime, time.ToDatetime(timezone.utc))
 
 
 class JobNotSucceeded(Error):
@@ -77,25 +72,23 @@ class Job:
         # The server says so in the answer to the submission only.
         self._is_from_store = bool(message.answered_from_store)
 
-    name = shown("name", str, "ensembleJobs/ID: by it `client.job(name)` finds the job again.")
-    pinned = shown("pinned", bool, "Whether its results do not expire.")
-    labels: dict[str, str] = shown(
-        "labels", dict, "Short texts by which `client.jobs(labels=...)` finds it."
+    name = shown(lambda job: str(job.name), "By it `client.job(name)` finds the job again.")
+    specification = shown(attrgetter("spec"), "The question, for client.submit.")
+    experiment = shown(lambda job: spelled(job.spec, "experiment"), 'Such as "first-hit".')
+    progress = shown(
+        lambda job: fraction_of(job.progress), "The share of the work that is done, 0 to 1."
     )
-    created = shown("create_time", utc, "When the server accepted it, in UTC.")
-    started = shown("start_time", utc, "When a worker began it; None before that.")
-    ended = shown("end_time", utc, "When it ended; None before that.")
-    continues = shown("continues", str, "The name of the job whose points it continues, or empty.")
-
-    @property
-    def specification(self) -> Any:
-        """The question, as the message ballpiston.v1.EnsembleSpec; client.submit accepts it."""
-        return self.message.spec
-
-    @property
-    def experiment(self) -> str:
-        """Such as "first-hit"."""
-        return spelled(self.message.spec, "experiment")
+    error = shown(lambda job: _error_text(job.error), "Why it failed; empty if it did not.")
+    pinned = shown(lambda job: bool(job.pinned), "Whether its results do not expire.")
+    labels: dict[str, str] = shown(
+        lambda job: dict(job.labels), "Short texts by which `client.jobs(labels=...)` finds it."
+    )
+    created = shown(lambda job: _time(job, "create_time"), "When the server accepted it, in UTC.")
+    started = shown(lambda job: _time(job, "start_time"), "When a worker began it, or None.")
+    ended = shown(lambda job: _time(job, "end_time"), "When it ended, or None.")
+    continues = shown(
+        lambda job: str(job.continues), "The name of the job whose points it continues, or empty."
+    )
 
     @property
     def state(self) -> str:
@@ -108,17 +101,6 @@ class Job:
     def has_ended(self) -> bool:
         """Whether it has succeeded, failed or been cancelled by now."""
         return self.state in ("succeeded", "failed", "cancelled")
-
-    @property
-    def progress(self) -> float:
-        """The share of the work that was done when the server was last asked, 0 to 1."""
-        return fraction_of(self.message.progress)
-
-    @property
-    def error(self) -> str:
-        """Why it failed; empty if it did not."""
-        error = self.message.error
-        return details_of(error).text(error.message) if self.message.HasField("error") else ""
 
     @property
     def answered_from_store(self) -> bool:
@@ -153,7 +135,8 @@ class Job:
         if self.answered_from_store and screen.is_visible:
             screen.note(_from_store_text(self))
         try:
-            self._follow(screen)
+            with closing(screen):
+                self._end(watch_job(self._connection, self.name, screen))
         except KeyboardInterrupt:
             print(_farewell(self), file=sys.stderr)
             raise
@@ -175,10 +158,6 @@ class Job:
         job continues this one if it has succeeded: it computes only the difference, and its result
         has the bytes of one long run.
 
-        Example:
-            >>> more = client.job(name).extend(samples=1e7)
-            >>> more.continues, more.watch()
-
         Raises:
             TypeError: not exactly one of samples, collisions and tolerance is given.
         """
@@ -189,7 +168,7 @@ class Job:
         estimate = spec.target.estimate
         spec.target.Clear()
         spec.target.estimate = estimate
-        set_target(spec, samples, collisions, tolerance, None)
+        set_target(spec, samples=samples, collisions=collisions, tolerance=tolerance)
         request = ensemble_pb2.CreateEnsembleJobRequest(
             spec=spec,
             request_id=str(uuid.uuid4()),
@@ -201,13 +180,8 @@ class Job:
     async def updates(self) -> AsyncIterator[Update]:
         """What changes until the job has ended, for an event loop: the wait needs no thread.
 
-        Example:
-            >>> async for update in job.updates():
-            ...     print(update.state, update.progress)
-
         Raises:
-            Unavailable: the server did not answer for two minutes. The job goes on.
-            ResourceExhausted: the server was busy for two minutes. The job goes on.
+            Unavailable, ResourceExhausted: as `watch`.
         """
         async for update in watch_updates(self._connection, self.name):
             if isinstance(update, Update):
@@ -217,9 +191,6 @@ class Job:
 
     async def result_async(self) -> Result:
         """`watch` for an event loop, without a bar.
-
-        Example:
-            >>> results = await asyncio.gather(*(job.result_async() for job in jobs))
 
         Raises:
             JobFailed, JobCancelled, Unavailable, ResourceExhausted: as `watch`.
@@ -271,11 +242,7 @@ class Job:
 
     def label(self, **labels: str | None) -> Job:
         """Sets these labels and keeps the others; None removes a label. Of two changes at the same
-        time the later one may undo the other.
-
-        Example:
-            >>> job.label(run="7", who=None)
-        """
+        time the later one may undo the other."""
         kept = {k: v for k, v in (self.refresh().labels | labels).items() if v is not None}
         return self._update(labels=check_labels(kept))
 
@@ -315,10 +282,8 @@ class Job:
     def _glance(self) -> None:
         """Updates the job if the server answers at once; a private server is not started for it."""
         request = ensemble_pb2.GetEnsembleJobRequest(name=self.name)
-        try:
+        with suppress(Error):
             self.message = self._connection.call_once(request, _GLANCE_SECONDS)
-        except Error:
-            pass
 
     def _last_state(self) -> str:
         return spelled(self.message, "state")
@@ -338,12 +303,6 @@ class Job:
         self.message = self._call(request)
         return self
 
-    def _follow(self, screen: Progress) -> None:
-        try:
-            self._end(watch_job(self._connection, self.name, screen))
-        finally:
-            screen.close()
-
     def _end(self, job: Any) -> None:
         """Stores the job of a watch's last message. That message has no grid, so the known
         specification is kept."""
@@ -360,6 +319,15 @@ class Job:
         error = error_of(error_class, text, details_of(status), "")
         error.job = self
         raise error
+
+
+def _time(job: Any, field: str) -> datetime | None:
+    time = value_of(job, field)
+    return None if time is None else cast(datetime, time.ToDatetime(timezone.utc))
+
+
+def _error_text(status: Any) -> str:
+    return details_of(status).text(status.message)
 
 
 def _farewell(job: Job) -> str:

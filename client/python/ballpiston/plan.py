@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ballpiston.fields import shown, spelled, value_of
 from ballpiston.result_table import html_table
-from ballpiston.fields import shown, value_of
-from ballpiston.spelling import spelled
 
 if TYPE_CHECKING:
     import pandas
@@ -22,25 +21,21 @@ class Plan:
             points it has as many, evenly spread.
     """
 
-    points = shown("point_count", int, "Of the grid.")
-    work = shown("work", float, "Seconds of processor time for the whole job.")
-    time = shown("time", float, "Seconds by the clock, if the server did nothing else.")
-    memory = shown(
-        "memory", float, "Bytes that the largest point needs with all workers; an upper bound."
+    points = shown(lambda plan: int(plan.point_count), "Of the grid.")
+    work = shown(lambda plan: float(plan.work), "Seconds of processor time for the whole job.")
+    time = shown(lambda plan: float(plan.time), "Seconds by the clock, if nothing else ran.")
+    memory = shown(lambda plan: float(plan.memory), "Bytes of the largest point; an upper bound.")
+    models = shown(
+        lambda plan: [spelled(point, "model") for point in plan.points],
+        "The model that would answer, for each planned point.",
+    )
+    reasons = shown(
+        lambda plan: [str(point.reason) for point in plan.points],
+        "Why that model, for each planned point.",
     )
 
     def __init__(self, message: Any) -> None:
         self.message = message
-
-    @property
-    def models(self) -> list[str]:
-        """The model that would answer, for each planned point."""
-        return [spelled(point, "model") for point in self.message.points]
-
-    @property
-    def reasons(self) -> list[str]:
-        """Why that model, for each planned point."""
-        return [str(point.reason) for point in self.message.points]
 
     def to_frame(self) -> pandas.DataFrame:
         """A pandas DataFrame, one row for each planned point and model, with samples, work (seconds

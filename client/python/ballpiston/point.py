@@ -6,10 +6,9 @@ import math
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ballpiston.curve import Curve, choose_curve, curve_of
-from ballpiston.fields import shown, value_of
+from ballpiston.fields import did_you_mean, shown, spelled, value_of
+from ballpiston.histogram import Curve, choose_curve, curve_of
 from ballpiston.histogram import Histogram, choose_histogram, histograms_of
-from ballpiston.spelling import did_you_mean, spelled
 
 _SMALLEST, _LARGEST = 1e-4, 1e7  # outside these a number has an exponent
 _ROUNDING = 5e-13  # an error below this share of the value is that of rounding
@@ -53,22 +52,20 @@ ESTIMATE_FIELDS = tuple(field.name for field in fields(Estimate))[2:]
 
 
 class Point:
-    """What was measured at one point.
+    """What was measured at one point, for instance result[0]["mean_hit_time"]."""
 
-    Example:
-        >>> point = result[0]
-        >>> point.parameters["delta"], point["mean_hit_time"]
-        (0.1, 57.66164520250258)
-    """
-
-    index = shown("index", int, "Position in the product of the grid's lists, rho outermost.")
-    reason = shown("reason", str, "Why that model, if the server chose it.")
+    index = shown(lambda point: int(point.index), "Position in the grid, rho outermost.")
+    model = shown(lambda point: spelled(point, "model"), 'That answered, such as "billiard".')
+    reason = shown(lambda point: str(point.reason), "Why that model, if the server chose it.")
     samples = shown(
-        "samples", float, "First hits, orbits, replicas or collisions behind the estimates."
+        lambda point: float(point.samples),
+        "First hits, orbits, replicas or collisions behind the estimates.",
     )
     remarks: list[str] = shown(
-        "remarks", list, "Sentences about the result, for instance that a run was too short."
+        lambda point: list(point.remarks), "For instance that a run was too short."
     )
+    histograms = shown(lambda point: histograms_of(point.histograms), "All of this point.")
+    curves = shown(lambda point: list(map(curve_of, point.curves)), "All of this point.")
 
     def __init__(self, message: Any) -> None:
         self.message = message  # ballpiston.v1.PointResult
@@ -77,11 +74,6 @@ class Point:
     def parameters(self) -> dict[str, float | str]:
         """The values of the parameters that the experiment uses, `cells` as text."""
         return parameters_of(self.message)
-
-    @property
-    def model(self) -> str:
-        """The model that answered, such as "billiard"."""
-        return spelled(self.message, "model")
 
     @property
     def estimates(self) -> dict[str, Estimate]:
@@ -95,21 +87,11 @@ class Point:
         """The standard error of an estimate, or None."""
         return self._named(name).standard_error
 
-    @property
-    def histograms(self) -> list[Histogram]:
-        """All of this point."""
-        return histograms_of(self.message.histograms)
-
     def histogram(
         self, name: str, sigma: int | None = None, time: float | None = None
     ) -> Histogram:
         """One of them; see Result.histogram."""
         return choose_histogram(self.histograms, name, sigma, time)
-
-    @property
-    def curves(self) -> list[Curve]:
-        """All of this point."""
-        return [curve_of(message) for message in self.message.curves]
 
     def curve(self, name: str) -> Curve:
         """The curve of this name."""

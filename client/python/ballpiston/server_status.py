@@ -3,8 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-from ballpiston.fields import record_of
-from ballpiston.spelling import spelled
+from ballpiston.fields import record_of, spelled
 
 
 @dataclass(frozen=True)

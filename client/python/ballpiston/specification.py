@@ -12,9 +12,10 @@ from typing import Any, TypeVar
 
 from google.protobuf import json_format
 
+from ballpiston.fields import did_you_mean, from_spelling
 from ballpiston.parameter_lists import INT64, UINT64, Numbers, Points, Shapes, add_points
-from ballpiston.parameter_lists import number_list, real_number, shape_list, truth_value, whole_number
-from ballpiston.spelling import did_you_mean, from_spelling
+from ballpiston.parameter_lists import number_list, real_number, shape_list, truth_value
+from ballpiston.parameter_lists import whole_number
 from ballpiston.v1 import spec_pb2
 
 
@@ -97,7 +98,8 @@ def specification(
         spec.grid.cells.extend(shape_list("cells", cells))
     if points is not None:
         add_points(points, spec.grid)
-    set_target(spec, samples, collisions, tolerance, budget)
+    targets = {"samples": samples, "collisions": collisions}
+    set_target(spec, **targets, tolerance=tolerance, budget=budget)
     if estimate is not None:
         if not isinstance(estimate, str):
             raise TypeError(f"estimate has to be a str, not {estimate!r}")
@@ -170,35 +172,26 @@ def _keywords_of(function: Callable[..., Any]) -> dict[str, inspect.Parameter]:
 _KEYWORDS = _keywords_of(specification)
 
 
-def set_target(
-    spec: Any,
-    samples: float | None,
-    collisions: float | None,
-    tolerance: float | None,
-    budget: float | None,
-) -> None:
-    """Sets the target of an EnsembleSpec.
+def set_target(spec: Any, **values: float | None) -> None:
+    """Sets the target of an EnsembleSpec: samples, collisions, tolerance, budget; None: not given.
 
     Raises:
         TypeError: targets that exclude each other.
         ValueError: a number that cannot be sent.
     """
-    values = {"samples": samples, "collisions": collisions}
-    values |= {"tolerance": tolerance, "budget": budget}
-    given = [name for name, value in values.items() if value is not None]
-    if len(given) > 1 and given != ["tolerance", "budget"]:
+    given = {name: value for name, value in values.items() if value is not None}
+    if len(given) > 1 and list(given) != ["tolerance", "budget"]:
         raise TypeError(
             f"{' and '.join(given)} exclude each other: give at most one of samples, collisions, "
             "tolerance, budget; only tolerance and budget may stand together"
         )
-    if samples is not None:
-        spec.target.samples = whole_number("samples", samples, *INT64)
-    if collisions is not None:
-        spec.target.collisions = whole_number("collisions", collisions, *INT64)
-    if tolerance is not None:
-        spec.target.tolerance = real_number("tolerance", tolerance)
-    if budget is not None:
-        spec.target.budget.FromNanoseconds(_nanoseconds(real_number("budget", budget)))
+    for name, value in given.items():
+        if name == "budget":
+            spec.target.budget.FromNanoseconds(_nanoseconds(real_number(name, value)))
+        elif name == "tolerance":
+            spec.target.tolerance = real_number(name, value)
+        else:
+            setattr(spec.target, name, whole_number(name, value, *INT64))
 
 
 def _nanoseconds(budget: float) -> int:

@@ -1,4 +1,5 @@
-"""Following a job to its end, through restarts of the server and cut connections.
+"""Following a job to its end, through restarts of the server and cut connections, in a thread that
+waits or in an event loop.
 
 If the stream breaks, the watch attaches again with the last resume token that it saw, after pauses
 that double from 0.1 s to 5 s, or as long as the server's error says, until nothing was heard for
@@ -7,27 +8,33 @@ stops, by RESOURCE_EXHAUSTED with a reason, as from a server that is busy, and b
 terminal state. Every other error ends the watch.
 """
 
+import asyncio
 import random
 import time
+from collections.abc import AsyncIterator
+from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
+import grpc
+import grpc.aio
+
+from ballpiston.channel import open_channel
 from ballpiston.connection import Connection
 from ballpiston.errors import Error, Unavailable
-from ballpiston.progress import Progress
-from ballpiston.v1 import ensemble_pb2
+from ballpiston.fields import spelled
+from ballpiston.point import Point
+from ballpiston.progress import Progress, fraction_of, progress_in
+from ballpiston.v1 import ensemble_pb2, ensemble_pb2_grpc
 
 _LONGEST_CONNECTING = 1.0  # seconds
 
-_ENDED = (
-    ensemble_pb2.EnsembleJob.SUCCEEDED,
-    ensemble_pb2.EnsembleJob.FAILED,
-    ensemble_pb2.EnsembleJob.CANCELLED,
-)
+_JOB = ensemble_pb2.EnsembleJob
 
 
 def has_ended(state: int) -> bool:
     """SUCCEEDED, FAILED or CANCELLED."""
-    return state in _ENDED
+    return state in (_JOB.SUCCEEDED, _JOB.FAILED, _JOB.CANCELLED)
 
 
 class ReattachPace:
@@ -71,16 +78,14 @@ def watch_job(
         pause = watch.pause_after(why)
         screen.show_pause(why.code == "RESOURCE_EXHAUSTED", pause)
         time.sleep(pause)
-        connect_again(connection)
+        _connect_again(connection)
 
 
-def connect_again(connection: Connection) -> None:
+def _connect_again(connection: Connection) -> None:
     """Waits up to a second for the connection. If there is none, the next stream reports the
     error."""
-    try:
+    with suppress(Unavailable):
         connection.revive(_LONGEST_CONNECTING)
-    except Unavailable:
-        pass
 
 
 class Attachments:
@@ -125,7 +130,7 @@ class Attachments:
         return pause
 
 
-def ended_early() -> Error:
+def _ended_early() -> Error:
     """Why a stream ended that had no error and no ended job."""
     return Unavailable("the server ended the watch before the end of the job", code="UNAVAILABLE")
 
@@ -138,9 +143,52 @@ def _read_stream(connection: Connection, watch: Attachments, screen: Progress) -
             screen.show(message)
     except Error as error:
         return error
-    return ended_early()
+    return _ended_early()
 
 
 def _is_broken_stream(why: Error) -> bool:
     end = (why.code, bool(why.reason))
     return why.code == "UNAVAILABLE" or end in {("CANCELLED", False), ("RESOURCE_EXHAUSTED", True)}
+
+
+@dataclass(frozen=True)
+class Update:
+    """One message of a watch.
+
+    Attributes:
+        state: of the job, such as "running".
+        progress: the share of the work that is done, 0 to 1.
+        points: those that changed, finished or not.
+    """
+
+    state: str
+    progress: float
+    points: list[Point]
+
+
+async def watch_updates(connection: Connection, name: str) -> AsyncIterator[Update | Any]:
+    """`watch_job` over gRPC's asyncio channel, without a thread: updates until the job has ended,
+    then the job itself."""
+    watch = Attachments(name)
+    state = "queued"
+    while True:
+        why = _ended_early()
+        async with open_channel(connection.address, connection.security, grpc.aio) as channel:
+            stub = ensemble_pb2_grpc.EnsembleServiceStub(channel)
+            try:
+                async for message in stub.WatchEnsembleJob(
+                    watch.request, metadata=connection.metadata()
+                ):
+                    watch.handle(message)
+                    if message.HasField("job"):
+                        state = spelled(message.job, "state")
+                    if (progress := progress_in(message)) is not None:
+                        changed = (*message.snapshot.points, *message.snapshot.finished_points)
+                        yield Update(state, fraction_of(progress), [Point(m) for m in changed])
+            except grpc.RpcError as error:
+                why = connection.error_of(error)
+        if watch.ended is not None:
+            yield watch.ended
+            return
+        await asyncio.sleep(watch.pause_after(why))
+        await asyncio.to_thread(_connect_again, connection)

@@ -15,11 +15,9 @@ from conftest import LIMIT, Home, wait_until
 
 import ballpiston
 from ballpiston._google_rpc import error_details_pb2, status_pb2
-from ballpiston.channel_security import ChannelSecurity, Token, check
-from ballpiston.connection_hint import connection_hint
+from ballpiston.channel import ChannelSecurity, Token, check, connection_hint
 from ballpiston.error_details import details_of, error_of
-from ballpiston.private_server import find_private_server
-from ballpiston.server_address import grpc_target, literal_address
+from ballpiston.server_address import find_private_server, grpc_target, literal_address
 from ballpiston.settings import address_and_security
 
 
@@ -183,7 +181,7 @@ def test_no_program_and_no_server_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("BALLPISTON_PROGRAM")
-    monkeypatch.setattr("ballpiston.private_server._program_beside_package", lambda: None)
+    monkeypatch.setattr("ballpiston.server_address._program_beside_package", lambda: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(ballpiston.NoPrivateServer, match="install the package ballpiston"):
         find_private_server()
