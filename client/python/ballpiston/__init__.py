@@ -14,23 +14,14 @@ answer has.
 The messages and stubs of the protocol are in ballpiston.v1.
 """
 
+# fmt: off
 from ballpiston._version import __version__
 from ballpiston.client import Client, connect
 from ballpiston.closed_forms import ClosedForms
 from ballpiston.collisions import Collisions
 from ballpiston.errors import (
-    DataLoss,
-    DeadlineExceeded,
-    Error,
-    FailedPrecondition,
-    InvalidArgument,
-    InvalidSpecification,
-    NoPrivateServer,
-    NotFound,
-    PermissionDenied,
-    ResourceExhausted,
-    ResultsExpired,
-    Unauthenticated,
+    DataLoss, DeadlineExceeded, Error, FailedPrecondition, InvalidArgument, InvalidSpecification,
+    NoPrivateServer, NotFound, PermissionDenied, ResourceExhausted, ResultsExpired, Unauthenticated,
     Unavailable,
 )
 from ballpiston.estimates_table import estimates_table
@@ -43,7 +34,6 @@ from ballpiston.server_status import ServerStatus
 from ballpiston.specification import specification
 from ballpiston.watch import Update
 
-# fmt: off
 __all__ = [
     "Client", "ClosedForms", "Collisions", "Curve", "DataLoss", "DeadlineExceeded", "Error",
     "Estimate", "FailedPrecondition", "Histogram", "InvalidArgument", "InvalidSpecification", "Job",

@@ -107,11 +107,8 @@ class ChannelSecurity:
 
 
 def check(security: ChannelSecurity, address: str) -> None:
-    """Whether these go together, and with the address. Reads no file.
-
-    Raises:
-        ValueError: says what does not fit, for instance a token without TLS.
-    """
+    """Whether these go together, and with the address. Reads no file. Raises ValueError: says what
+    does not fit, for instance a token without TLS."""
     if is_socket(address) and (security.has_tls or security.has_token):
         raise ValueError(
             "a Unix socket uses no TLS and no token: only the server's own user can open it"
@@ -125,11 +122,8 @@ def check(security: ChannelSecurity, address: str) -> None:
 
 def credentials_of(security: ChannelSecurity) -> Any | None:
     """gRPC's credentials, or None for a channel without encryption. Reads the authority file, which
-    has to look like PEM: gRPC would report only that there is no connection.
-
-    Raises:
-        ValueError: names a file that cannot be used.
-    """
+    has to look like PEM: gRPC would report only that there is no connection. Raises ValueError:
+    names a file that cannot be used."""
     if not security.has_tls:
         return None
     authorities = None
@@ -202,11 +196,8 @@ def _contents(path: str, what: str, is_secret: bool) -> bytes:
 
 def open_channel(address: str, security: ChannelSecurity, module: Any = grpc) -> Any:
     """A grpc.Channel, which does not connect yet. With `module` grpc.aio the channel is for an
-    event loop, and only the loop that opened it may use it.
-
-    Raises:
-        ValueError: not an address, or security that does not fit together or cannot be read.
-    """
+    event loop, and only the loop that opened it may use it. Raises ValueError: not an address, or
+    security that does not fit together or cannot be read."""
     target = grpc_target(address)
     check(security, address)
     credentials = credentials_of(security)

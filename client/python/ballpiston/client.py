@@ -102,8 +102,6 @@ class Client:
     def __repr__(self) -> str:
         return f"<client of {self.address}>"
 
-    # Questions
-
     @takes_keywords_of(specification)
     def submit(
         self,
@@ -172,14 +170,9 @@ class Client:
         request = ensemble_pb2.PlanEnsembleJobRequest(spec=question_of(experiment, question))
         return Plan(self._connection.call(request))
 
-    # Jobs
-
     def job(self, name: str) -> Job:
-        """The job of this name, ensembleJobs/ID or the ID alone.
-
-        Raises:
-            NotFound: there is no such job, or it belongs to another user.
-        """
+        """The job of this name, ensembleJobs/ID or the ID alone. Raises NotFound: there is no such
+        job, or it belongs to another user."""
         if not isinstance(name, str):
             raise TypeError(f"name has to be a str, such as job.name, not {name!r}")
         full = name if name.startswith(_COLLECTION) else _COLLECTION + name
@@ -220,8 +213,6 @@ class Client:
                 break
         return jobs
 
-    # Without a job
-
     def analytic(
         self,
         rho: Numbers,
@@ -241,9 +232,6 @@ class Client:
                 conditional mean free time.
             outgoing_epsilon: energies after the collision, between 0 and 1/2: adds the kernel.
             beta, temperature: 1e-120 to 1e120; adds canonical averages.
-
-        Example:
-            >>> client.analytic(0.5296, [0.1, 0.2])["tau_ball_piston"]
         """
         lists = {"rho": rho, "delta": delta, "epsilon": epsilon, "beta": beta}
         lists |= {"outgoing_epsilon": outgoing_epsilon, "temperature": temperature}
@@ -294,10 +282,6 @@ class Client:
 
         Raises:
             ValueError: an event has no such field.
-
-        Example:
-            >>> orbit = client.trace_arrays("event", "free_time", rho=0.5296, delta=0.2, events=1e5)
-            >>> np.nanmean(orbit["free_time"][orbit["event"] == "ball_piston"])
         """
         return columns_of(self._connection, _orbit_request(**orbit), fields)
 

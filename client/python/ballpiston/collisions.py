@@ -48,11 +48,8 @@ class Collisions:
         return np.concatenate(parts) if parts else np.empty(0, _RECORD)
 
     def to_parquet(self, path: Path | str) -> None:
-        """Writes the rest as a file of columns: the whole file or none.
-
-        Raises:
-            ModuleNotFoundError: this needs pandas and pyarrow. No collision was read.
-        """
+        """Writes the rest as a file of columns: the whole file or none. Raises ModuleNotFoundError:
+        this needs pandas and pyarrow. No collision was read."""
         import pandas
         import pyarrow as _  # pandas looks for it only after the collisions were read
 

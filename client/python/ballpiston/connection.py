@@ -114,11 +114,7 @@ class Connection:
     def revive(self, wait: float = _REVIVE_SECONDS) -> None:
         """Starts a private server again if it is gone. Then waits, at most `wait` seconds, until
         the channel is connected: it may be pausing after its last attempt, and a call would fail at
-        once.
-
-        Raises:
-            NoPrivateServer: the private server cannot be started.
-        """
+        once. Raises NoPrivateServer: the private server cannot be started."""
         if self.private is not None:
             self.private.address()
         _off_main(self._wait_until_connected, wait)

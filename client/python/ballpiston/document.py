@@ -31,6 +31,7 @@ from google.protobuf import json_format
 from google.protobuf.descriptor import FieldDescriptor
 
 from ballpiston._version import __version__
+from ballpiston.fields import frame_of
 from ballpiston.v1 import ensemble_pb2, result_pb2
 
 # Protocol Buffers 5 renamed the option that writes fields with their default value.
@@ -60,12 +61,8 @@ def document_of(job: Any, points: Sequence[Any]) -> str:
 
 
 def read_document(path: Path) -> tuple[Any, list[Any]]:
-    """The job and the points in a file.
-
-    Raises:
-        ValueError: the file has no such document.
-        OSError: the file cannot be read.
-    """
+    """The job and the points in a file. Raises ValueError: the file has no such document; OSError:
+    the file cannot be read."""
     data = path.read_bytes()
     if data.startswith(_ZIP_MAGIC):
         raise ValueError(
@@ -114,11 +111,8 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 def write_table(path: Path, table: Table, comment: str = "") -> None:
     """Writes the whole file or none. A .csv file has all digits, and an empty cell for NaN. If
-    there is a comment, it is the first line, after a #.
-
-    Raises:
-        ModuleNotFoundError: .parquet needs pandas and pyarrow.
-    """
+    there is a comment, it is the first line, after a #. Raises ModuleNotFoundError: .parquet needs
+    pandas and pyarrow."""
     with whole_file(path) as part:
         if path.suffix == ".csv":
             with part.open("w", newline="", encoding="utf-8") as file:
@@ -130,9 +124,7 @@ def write_table(path: Path, table: Table, comment: str = "") -> None:
         elif path.suffix == ".npz":
             part.write_bytes(npz_of(table))
         else:
-            import pandas
-
-            pandas.DataFrame(table).to_parquet(part, index=False)
+            frame_of(table).to_parquet(part, index=False)
 
 
 def npz_of(table: Table) -> memoryview:

@@ -8,7 +8,6 @@ import numpy as np
 
 from ballpiston.document import Table
 from ballpiston.errors import NotFound, ResultsExpired
-from ballpiston.fields import spelled
 from ballpiston.job import Job
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
 from ballpiston.v1 import ensemble_pb2
@@ -22,11 +21,8 @@ _COLUMNS = (*_OF_JOB, "index", *PARAMETERS, "model", "samples", "name", "value",
 def estimates_table(jobs: Iterable[Job]) -> Table:
     """Columns of equal length, NaN or "" where a value is absent: of each job the points that are
     finished. A note on standard error names each job that has not ended, and each that is left out
-    because its results have expired or it was deleted meanwhile.
-
-    Raises:
-        ResultsExpired, NotFound: every job would be left out.
-    """
+    because its results have expired or it was deleted meanwhile. Raises ResultsExpired, NotFound:
+    every job would be left out."""
     rows: list[dict[str, Any]] = []
     left_out: list[ResultsExpired | NotFound] = []
     count = 0
@@ -37,7 +33,8 @@ def estimates_table(jobs: Iterable[Job]) -> Table:
             rows += _rows(job)
         except (ResultsExpired, NotFound) as error:
             left_out.append(error)
-            _note(f"{job.name} is left out: {str(error).splitlines()[0]}")
+            why = str(error).splitlines()[0]
+            print(f"ballpiston: {job.name} is left out: {why}", file=sys.stderr)
     if left_out and len(left_out) == count:
         raise left_out[-1]
     return {
@@ -46,15 +43,11 @@ def estimates_table(jobs: Iterable[Job]) -> Table:
     }
 
 
-def _note(text: str) -> None:
-    print(f"ballpiston: {text}", file=sys.stderr)
-
-
 def _rows(job: Job) -> Iterator[dict[str, Any]]:
     result = job.result_in(ensemble_pb2.ListResultsRequest.BASIC)
     if not has_ended(job.message.state):
-        state, points = spelled(job.message, "state"), job.message.progress.points
-        _note(f"{job.name} is still {state}: {len(result)} of {points} points are finished")
+        finished = f"{len(result)} of {job.message.progress.points} points are finished"
+        print(f"ballpiston: {job.name} is still {result.state}: {finished}", file=sys.stderr)
     of_job = {
         "job": job.name,
         "labels": " ".join(f"{key}={value}" for key, value in sorted(job.labels.items())),

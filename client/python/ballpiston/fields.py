@@ -31,6 +31,13 @@ def column(messages: Iterable[Any], name: str) -> FloatArray:
     return np.array([value_of(message, name) for message in messages], dtype=np.float64)
 
 
+def frame_of(table: Any) -> Any:
+    """A pandas.DataFrame of rows or of columns by name."""
+    import pandas
+
+    return pandas.DataFrame(table)
+
+
 def record_of(message: Any) -> dict[str, Any]:
     """The fields by name. Optional fields and messages that are absent are left out; values of
     enums are their names."""
@@ -69,12 +76,8 @@ def spelled(message: Any, field: str) -> str:
 
 
 def from_spelling(enum: Any, what: str, text: object) -> int:
-    """The number of a spelling. `what` names the argument in the error.
-
-    Raises:
-        TypeError: `text` is not a str.
-        ValueError: no value is spelled like this; the message lists the values.
-    """
+    """The number of a spelling. `what` names the argument in the error. Raises TypeError: `text` is
+    not a str; ValueError: no value is spelled like this; the message lists the values."""
     if not isinstance(text, str):
         raise TypeError(f"{what} has to be a str, not {type(text).__name__}")
     # All values except the unspecified one.

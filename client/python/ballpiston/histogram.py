@@ -61,11 +61,8 @@ def histograms_of(messages: Iterable[Any]) -> list[Histogram]:
 def choose_histogram(
     histograms: list[Histogram], name: str, sigma: int | None, time: float | None
 ) -> Histogram:
-    """The only one of this name and sign; of several times the nearest one.
-
-    Raises:
-        KeyError: there is none, or several; the message lists those to choose from.
-    """
+    """The only one of this name and sign; of several times the nearest one. Raises KeyError: there
+    is none, or several; the message lists those to choose from."""
     named = [h for h in histograms if h.name == name]
     if not named:
         raise KeyError(no_such("histogram", name, "this point", (h.name for h in histograms)))
@@ -155,11 +152,7 @@ def curve_of(message: Any) -> Curve:
 
 
 def choose_curve(messages: Iterable[Any], name: str) -> Curve:
-    """The curve of this name.
-
-    Raises:
-        KeyError: there is none.
-    """
+    """The curve of this name. Raises KeyError: there is none."""
     by_name = {message.name: message for message in messages}
     if name not in by_name:
         raise KeyError(no_such("curve", name, "this point", by_name))

@@ -78,7 +78,10 @@ class Job:
     progress = shown(
         lambda job: fraction_of(job.progress), "The share of the work that is done, 0 to 1."
     )
-    error = shown(lambda job: _error_text(job.error), "Why it failed; empty if it did not.")
+    error = shown(
+        lambda job: details_of(job.error).text(job.error.message),
+        "Why it failed; empty if it did not.",
+    )
     pinned = shown(lambda job: bool(job.pinned), "Whether its results do not expire.")
     labels: dict[str, str] = shown(
         lambda job: dict(job.labels), "Short texts by which `client.jobs(labels=...)` finds it."
@@ -106,8 +109,6 @@ class Job:
     def answered_from_store(self) -> bool:
         """Whether this job existed before it was submitted, and answered the same question."""
         return self._is_from_store
-
-    # Actions
 
     def refresh(self) -> Job:
         """Asks the server for the job as it is now."""
@@ -156,11 +157,8 @@ class Job:
     ) -> Job:
         """Asks the same question with more samples or collisions, or a smaller tolerance. The new
         job continues this one if it has succeeded: it computes only the difference, and its result
-        has the bytes of one long run.
-
-        Raises:
-            TypeError: not exactly one of samples, collisions and tolerance is given.
-        """
+        has the bytes of one long run. Raises TypeError: not exactly one of samples, collisions and
+        tolerance is given."""
         if samples is collisions is tolerance is None:
             raise TypeError("extend needs a target: give samples, collisions or tolerance")
         spec = spec_pb2.EnsembleSpec()
@@ -178,11 +176,8 @@ class Job:
         return Job(self._connection, self._call(request))
 
     async def updates(self) -> AsyncIterator[Update]:
-        """What changes until the job has ended, for an event loop: the wait needs no thread.
-
-        Raises:
-            Unavailable, ResourceExhausted: as `watch`.
-        """
+        """What changes until the job has ended, for an event loop: the wait needs no thread. Raises
+        Unavailable, ResourceExhausted: as `watch`."""
         async for update in watch_updates(self._connection, self.name):
             if isinstance(update, Update):
                 yield update
@@ -190,23 +185,17 @@ class Job:
                 self._end(update)
 
     async def result_async(self) -> Result:
-        """`watch` for an event loop, without a bar.
-
-        Raises:
-            JobFailed, JobCancelled, Unavailable, ResourceExhausted: as `watch`.
-        """
+        """`watch` for an event loop, without a bar. Raises JobFailed, JobCancelled, Unavailable,
+        ResourceExhausted: as `watch`."""
         async for _ in self.updates():
             pass
         self._raise_unless_succeeded()
         return await asyncio.to_thread(self.result)
 
     def result(self) -> Result:
-        """The points that are finished now. It does not wait.
-
-        Raises:
-            ResultsExpired: the server keeps only the specification:
-                `client.run(job.specification)` computes the same results again.
-        """
+        """The points that are finished now. It does not wait. Raises ResultsExpired: the server
+        keeps only the specification: `client.run(job.specification)` computes the same results
+        again."""
         return self.result_in(ensemble_pb2.ListResultsRequest.FULL)
 
     def result_in(self, view: Any) -> Result:
@@ -225,11 +214,8 @@ class Job:
                 return Result(self.message, points)
 
     def cancel(self) -> Job:
-        """Stops the job. Its finished points stay.
-
-        Raises:
-            FailedPrecondition: it has already ended (reason JOB_ALREADY_ENDED).
-        """
+        """Stops the job. Its finished points stay. Raises FailedPrecondition: it has already ended
+        (reason JOB_ALREADY_ENDED)."""
         request = ensemble_pb2.CancelEnsembleJobRequest(
             name=self.name, request_id=str(uuid.uuid4())
         )
@@ -248,16 +234,11 @@ class Job:
 
     def delete(self) -> None:
         """Deletes the job with its results. It is not retried: if the answer was lost
-        (Unavailable), the job may have been deleted.
-
-        Raises:
-            FailedPrecondition: it has not ended (reason JOB_STILL_ACTIVE).
-        """
+        (Unavailable), the job may have been deleted. Raises FailedPrecondition: it has not ended
+        (reason JOB_STILL_ACTIVE)."""
         if self._connection.private is not None:
             self._connection.revive()
         self._connection.call_once(ensemble_pb2.DeleteEnsembleJobRequest(name=self.name))
-
-    # How it looks
 
     def __repr__(self) -> str:
         progress = self.message.progress
@@ -324,10 +305,6 @@ class Job:
 def _time(job: Any, field: str) -> datetime | None:
     time = value_of(job, field)
     return None if time is None else cast(datetime, time.ToDatetime(timezone.utc))
-
-
-def _error_text(status: Any) -> str:
-    return details_of(status).text(status.message)
 
 
 def _farewell(job: Job) -> str:

@@ -40,12 +40,8 @@ _NUMBER_CHARACTERS = frozenset("0123456789+-.eE")
 
 
 def number_list(name: str, value: Numbers) -> list[float]:
-    """The numbers of one parameter, which `name` names in errors.
-
-    Raises:
-        TypeError: a value is not a number.
-        ValueError: a text does not have the form of a list.
-    """
+    """The numbers of one parameter, which `name` names in errors. Raises TypeError: a value is not
+    a number; ValueError: a text does not have the form of a list."""
     if isinstance(value, str):
         return _parsed_list(name, value)
     return [real_number(name, item) for item in _items(name, value)]
@@ -62,12 +58,8 @@ def shape_list(name: str, value: Shapes) -> list[str]:
 
 
 def whole_number(name: str, value: object, least: float = -math.inf, most: float = math.inf) -> int:
-    """10000, 1e4 or np.int64(10000), as an int.
-
-    Raises:
-        TypeError: not a number.
-        ValueError: a number that is not whole, or not from `least` to `most`.
-    """
+    """10000, 1e4 or np.int64(10000), as an int. Raises TypeError: not a number; ValueError: a
+    number that is not whole, or not from `least` to `most`."""
     value = _scalar(value)
     if isinstance(value, numbers.Integral) and not isinstance(value, bool):
         number = int(value)
@@ -81,12 +73,8 @@ def whole_number(name: str, value: object, least: float = -math.inf, most: float
 
 
 def real_number(name: str, value: object) -> float:
-    """A float.
-
-    Raises:
-        TypeError: not a number.
-        ValueError: an int beyond the range of double precision.
-    """
+    """A float. Raises TypeError: not a number; ValueError: an int beyond the range of double
+    precision."""
     value = _scalar(value)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
         raise TypeError(f"{name} has to be a number, not {value!r}")
@@ -184,12 +172,9 @@ def _chain(name: str, value: object) -> str:
 
 
 def add_points(points: Points, grid: Any) -> None:
-    """Adds the columns to the lists of a Grid, and their names to its table.
-
-    Raises:
-        TypeError: not a table, or a column that is also given as a list.
-        ValueError: an unknown column, a row that lacks a column, or no row.
-    """
+    """Adds the columns to the lists of a Grid, and their names to its table. Raises TypeError: not
+    a table, or a column that is also given as a list; ValueError: an unknown column, a row that
+    lacks a column, or no row."""
     columns = _columns(points)
     if not columns or any(len(values) == 0 for values in columns.values()):
         raise ValueError("points has no row")

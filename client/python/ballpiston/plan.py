@@ -1,14 +1,9 @@
 """What a question would cost with each model, and which model would answer."""
 
-from __future__ import annotations
+from typing import Any
 
-from typing import TYPE_CHECKING, Any
-
-from ballpiston.fields import shown, spelled, value_of
+from ballpiston.fields import frame_of, shown, spelled, value_of
 from ballpiston.result_table import html_table
-
-if TYPE_CHECKING:
-    import pandas
 
 _MOST_ROWS = 25
 
@@ -37,12 +32,10 @@ class Plan:
     def __init__(self, message: Any) -> None:
         self.message = message
 
-    def to_frame(self) -> pandas.DataFrame:
+    def to_frame(self) -> Any:
         """A pandas DataFrame, one row for each planned point and model, with samples, work (seconds
         of processor time) and relative errors; NaN where unknown. Needs pandas."""
-        import pandas
-
-        return pandas.DataFrame(self._rows())
+        return frame_of(self._rows())
 
     def __repr__(self) -> str:
         lines = [" {:1} {:<18} {:>9}  {}".format(*row) for row in self._shown()]

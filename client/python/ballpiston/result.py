@@ -7,17 +7,14 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
 
 from ballpiston.arrays import Arrays, arrays_of, by_name, only, parameter_arrays
 from ballpiston.document import document_of, read_document, write_atomically, write_table
-from ballpiston.fields import FloatArray, column, shown, spelled
+from ballpiston.fields import FloatArray, column, frame_of, shown, spelled
 from ballpiston.histogram import Curve, Histogram
 from ballpiston.point import Point, unknown_estimate
 from ballpiston.result_table import result_html, result_text
-
-if TYPE_CHECKING:
-    import pandas
 
 
 class Result:
@@ -60,8 +57,6 @@ class Result:
         self.job = job
         self.messages = list(messages)
 
-    # Points
-
     def __len__(self) -> int:
         return len(self.messages)
 
@@ -77,12 +72,8 @@ class Result:
         ...
 
     def __getitem__(self, key: str | int) -> FloatArray | Point:
-        """The values of an estimate at all points, or one point.
-
-        Raises:
-            KeyError: no point has an estimate of this name.
-            IndexError: there are fewer points.
-        """
+        """The values of an estimate at all points, or one point. Raises KeyError: no point has an
+        estimate of this name; IndexError: there are fewer points."""
         if isinstance(key, str):
             return self._column(key, "value")
         if isinstance(key, slice):
@@ -91,8 +82,6 @@ class Result:
 
     def __contains__(self, name: object) -> bool:
         return name in self.names
-
-    # Columns
 
     @property
     def names(self) -> list[str]:
@@ -124,8 +113,6 @@ class Result:
         """What the limit delta -> 0 gives at each point."""
         return self._column(name, "limit")
 
-    # Histograms and curves
-
     def histogram(
         self, name: str, *, sigma: int | None = None, time: float | None = None, point: int = 0
     ) -> Histogram:
@@ -143,34 +130,23 @@ class Result:
         return self[point].histogram(name, sigma, time)
 
     def curve(self, name: str, *, point: int = 0) -> Curve:
-        """A curve of one point, such as "survival" or "temperature_profile".
-
-        Raises:
-            KeyError: the point has no such curve; the message lists those that it has.
-        """
+        """A curve of one point, such as "survival" or "temperature_profile". Raises KeyError: the
+        point has no such curve; the message lists those that it has."""
         return self[point].curve(name)
-
-    # Other forms
 
     def arrays(self) -> Arrays:
         """Everything as a dict of arrays, as in an .npz file; arrays.py describes the layout."""
         return arrays_of(self.job, self.messages)
 
-    def to_frame(self) -> pandas.DataFrame:
+    def to_frame(self) -> Any:
         """A pandas DataFrame with one row for each point, and as columns the one-dimensional arrays
         of `arrays()`. Needs pandas."""
-        import pandas
-
-        columns = {name: a for name, a in self.arrays().items() if a.ndim == 1}
-        return pandas.DataFrame(columns)
+        return frame_of({name: a for name, a in self.arrays().items() if a.ndim == 1})
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a file: NAME.json, which ballpiston.load reads again, or NAME.npz, arrays for
-        numpy.load. An existing file is replaced.
-
-        Raises:
-            ValueError: the name ends with neither .json nor .npz.
-        """
+        numpy.load. An existing file is replaced. Raises ValueError: the name ends with neither
+        .json nor .npz."""
         path = Path(path)
         if path.suffix == ".json":
             write_atomically(path, document_of(self.job, self.messages).encode())
@@ -212,11 +188,6 @@ class Result:
 
 def load(path: str | os.PathLike[str]) -> Result:
     """A result from a JSON file that `result.save` or `ballpiston result JOB --format json` wrote.
-    Needs no server.
-
-    Raises:
-        ValueError: the file is not a saved result, for instance one with arrays (.npz), which
-            numpy.load reads.
-        OSError: the file cannot be read.
-    """
+    Needs no server. Raises ValueError: the file is not a saved result, for instance one with arrays
+    (.npz), which numpy.load reads; OSError: the file cannot be read."""
     return Result(*read_document(Path(path)))

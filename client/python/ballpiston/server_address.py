@@ -50,11 +50,8 @@ def is_loopback(address: str) -> bool:
 
 
 def grpc_target(address: str) -> str:
-    """The target that gRPC wants.
-
-    Raises:
-        ValueError: this is not an address; the message shows the two forms.
-    """
+    """The target that gRPC wants. Raises ValueError: this is not an address; the message shows the
+    two forms."""
     if is_socket(address):
         length = len(address.removeprefix(_SOCKET_SCHEME).encode())
         if length > _LONGEST_SOCKET_PATH:
@@ -80,11 +77,8 @@ class PrivateServer:
     program: str
 
     def address(self) -> str:
-        """Its address, unix:PATH. Starts the server if it does not run.
-
-        Raises:
-            NoPrivateServer: the program cannot be run, or cannot start the server.
-        """
+        """Its address, unix:PATH. Starts the server if it does not run. Raises NoPrivateServer: the
+        program cannot be run, or cannot start the server."""
         try:
             answer = subprocess.run(
                 [self.program, "server", "address"],
@@ -105,11 +99,7 @@ class PrivateServer:
 
 def find_private_server() -> PrivateServer:
     """With the program that BALLPISTON_PROGRAM names, else the one that is installed with this
-    package, else the one in PATH.
-
-    Raises:
-        NoPrivateServer: there is no program.
-    """
+    package, else the one in PATH. Raises NoPrivateServer: there is no program."""
     program = os.environ.get("BALLPISTON_PROGRAM") or _program_beside_package()
     program = program or shutil.which(_PROGRAM)
     if program:

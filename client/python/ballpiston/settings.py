@@ -29,11 +29,8 @@ _FALSE = ("", "0", "false", "no", "off", "disable")
 
 def address_and_security(given: Mapping[str, Any]) -> tuple[str, ChannelSecurity]:
     """From the arguments of `connect` that are not None. The address is empty for the private
-    server. Over a Unix socket, the private server's too, only arguments count.
-
-    Raises:
-        ValueError: the private server with TLS or a token, or a config file that is not TOML.
-    """
+    server. Over a Unix socket, the private server's too, only arguments count. Raises ValueError:
+    the private server with TLS or a token, or a config file that is not TOML."""
     settings: dict[str, Any] = {}
     for stronger in (_config_file(), _environment(), given):
         if "token" in stronger or "token_file" in stronger:

@@ -115,12 +115,8 @@ def specification(
 def question_of(experiment: object, question: Mapping[str, Any], others: Iterable[str] = ()) -> Any:
     """The message for the arguments of submit, run, plan and sample. In place of an experiment's
     name they take a message, such as job.specification, or its JSON as a dict. `others` are further
-    keywords of the method, for suggestions.
-
-    Raises:
-        TypeError: a keyword that does not exist; the message suggests the nearest one.
-        ValueError: a dict that is not a specification.
-    """
+    keywords of the method, for suggestions. Raises TypeError: a keyword that does not exist; the
+    message suggests the nearest one; ValueError: a dict that is not a specification."""
     if isinstance(experiment, str):
         for name in question:
             if name not in _KEYWORDS:
@@ -128,11 +124,8 @@ def question_of(experiment: object, question: Mapping[str, Any], others: Iterabl
                 raise TypeError(f"there is no keyword {name!r}{hint}")
         return specification(experiment, **question)
     if question:
-        raise TypeError(
-            "a specification holds the whole question: give no "
-            + ", ".join(question)
-            + " beside it, or change a copy of the specification"
-        )
+        given = ", ".join(question)
+        raise TypeError(f"a specification is a whole question: give no {given}, or change a copy")
     if isinstance(experiment, spec_pb2.EnsembleSpec):
         return experiment
     if isinstance(experiment, Mapping):
@@ -140,10 +133,8 @@ def question_of(experiment: object, question: Mapping[str, Any], others: Iterabl
             return json_format.ParseDict(dict(experiment), spec_pb2.EnsembleSpec())
         except json_format.ParseError as error:
             raise ValueError(f"not a specification: {error}") from error
-    raise TypeError(
-        "the first argument has to be the name of an experiment or a specification, not "
-        + type(experiment).__name__
-    )
+    kind = type(experiment).__name__
+    raise TypeError(f"the first argument has to be an experiment or a specification, not {kind}")
 
 
 Method = TypeVar("Method", bound=Callable[..., Any])
@@ -174,11 +165,7 @@ _KEYWORDS = _keywords_of(specification)
 
 def set_target(spec: Any, **values: float | None) -> None:
     """Sets the target of an EnsembleSpec: samples, collisions, tolerance, budget; None: not given.
-
-    Raises:
-        TypeError: targets that exclude each other.
-        ValueError: a number that cannot be sent.
-    """
+    Raises TypeError: targets that exclude each other; ValueError: a number that cannot be sent."""
     given = {name: value for name, value in values.items() if value is not None}
     if len(given) > 1 and list(given) != ["tolerance", "budget"]:
         raise TypeError(

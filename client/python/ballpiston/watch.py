@@ -64,12 +64,8 @@ class ReattachPace:
 def watch_job(
     connection: Connection, name: str, screen: Progress, pace: ReattachPace | None = None
 ) -> Any:
-    """Blocks until the job has ended and returns it, as an EnsembleJob.
-
-    Raises:
-        Unavailable, ResourceExhausted: the watch gave up.
-        Error: any other error of the server.
-    """
+    """Blocks until the job has ended and returns it, as an EnsembleJob. Raises Unavailable,
+    ResourceExhausted: the watch gave up; Error: any other error of the server."""
     watch = Attachments(name, pace)
     while True:
         why = _read_stream(connection, watch, screen)
@@ -110,13 +106,9 @@ class Attachments:
             self.ended = message.job
 
     def pause_after(self, why: Error) -> float:
-        """Seconds until the next stream, after one that `why` ended.
-
-        Raises:
-            Error: `why`, if it does not say that the stream broke, or if it is time to give up and
-                the server is busy.
-            Unavailable: it is time to give up, and no server answers.
-        """
+        """Seconds until the next stream, after one that `why` ended. Raises Error: `why`, if it
+        does not say that the stream broke, or if it is time to give up and the server is busy;
+        Unavailable: it is time to give up, and no server answers."""
         if not _is_broken_stream(why):
             raise why
         pause = self._pace.next_pause(time.monotonic(), why.retry_delay)
