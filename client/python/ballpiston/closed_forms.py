@@ -71,9 +71,8 @@ class ClosedForms:
         rows = []
         for point in self.message.points:
             pair = {name: getattr(point, name) for name in _PAIR}
-            parts = [(_ENERGY, e) for e in point.energies] + [
-                (_CANONICAL, c) for c in point.canonical
-            ]
+            parts = [(_ENERGY, e) for e in point.energies]
+            parts += [(_CANONICAL, c) for c in point.canonical]
             for fields, part in parts or [((), None)]:
                 rows.append(pair | {name: getattr(part, name) for name in fields})
         return frame_of(rows)

@@ -248,7 +248,9 @@ class Job:
         )
 
     def _repr_html_(self) -> str:
-        self._glance()
+        request = ensemble_pb2.GetEnsembleJobRequest(name=self.name)
+        with suppress(Error):  # if the server answers at once; a private one is not started for it
+            self.message = self._connection.call_once(request, _GLANCE_SECONDS)
         progress = self.message.progress
         facts = {
             "experiment": self.experiment,
@@ -259,12 +261,6 @@ class Job:
         }
         known = {name: fact for name, fact in facts.items() if fact}
         return html_table(f"job {self.name}", known, [known.values()])
-
-    def _glance(self) -> None:
-        """Updates the job if the server answers at once; a private server is not started for it."""
-        request = ensemble_pb2.GetEnsembleJobRequest(name=self.name)
-        with suppress(Error):
-            self.message = self._connection.call_once(request, _GLANCE_SECONDS)
 
     def _last_state(self) -> str:
         return spelled(self.message, "state")

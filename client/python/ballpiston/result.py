@@ -116,17 +116,9 @@ class Result:
     def histogram(
         self, name: str, *, sigma: int | None = None, time: float | None = None, point: int = 0
     ) -> Histogram:
-        """A histogram of one point.
-
-        Args:
-            name: "alpha", "piston_energy", "ball_speed" or "piston_speed".
-            sigma: of an angle the sign of the piston's velocity, +1 or -1.
-            time: for "piston_energy", in cells over unit speed: the nearest one is taken.
-            point: position in this result.
-
-        Raises:
-            KeyError: the point has no such histogram, or several; the message lists them.
-        """
+        """A histogram of the point at this position, such as "alpha", an angle with the sign sigma
+        of the piston's velocity, or "piston_energy" at the nearest time, in cells over unit speed.
+        Raises KeyError: the point has no such histogram, or several; the message lists them."""
         return self[point].histogram(name, sigma, time)
 
     def curve(self, name: str, *, point: int = 0) -> Curve:

@@ -39,10 +39,7 @@ def html_table(heading: str, titles: Iterable[str], rows: Sequence[Iterable[str]
 
 def _row(message: Any) -> dict[str, str]:
     point = Point(message)
-    row = {
-        name: value if isinstance(value, str) else f"{value:.6g}"
-        for name, value in point.parameters.items()
-    }
+    row = {k: v if isinstance(v, str) else f"{v:.6g}" for k, v in point.parameters.items()}
     row["model"] = point.model
     row["samples"] = f"{point.samples:.15g}"
     for estimate in point.estimates.values():
