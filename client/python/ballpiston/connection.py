@@ -63,14 +63,10 @@ class Connection:
     def call_once(self, request: Any, timeout: float | None = None) -> Any:
         """The answer to a single attempt, apart from those of the channel's retry policy."""
         options = {"timeout": timeout or self.timeout, "metadata": self.metadata()}
-        call = _off_main(self._method_of(request).future, request, **options)
         try:
-            return _off_main(call.result)
+            return _off_main(self._method_of(request), request, **options)
         except grpc.RpcError as error:
             raise self.error_of(error) from None
-        except KeyboardInterrupt:
-            _off_main(call.cancel)
-            raise
 
     def stream(self, request: Any) -> Generator[Any, None, None]:
         """The messages of a streaming call. It is cancelled when the iterator is closed."""
@@ -144,7 +140,7 @@ def _off_main(function: Callable[..., Any], *arguments: Any, **options: Any) -> 
     """What the function returns. From the main thread it runs on a thread of its own, which Ctrl-C
     does not interrupt. Interrupted between two of its lines, gRPC may keep a lock for ever, and
     every later call of the channel would wait for it. The main thread waits at a SimpleQueue, which
-    an interruption leaves intact."""
+    an interruption leaves intact. A single call that was interrupted ends by itself."""
     if threading.current_thread() is not threading.main_thread() or sys.is_finalizing():
         return function(*arguments, **options)
     ended: queue.SimpleQueue[tuple[Any, BaseException | None]] = queue.SimpleQueue()
