@@ -16,7 +16,7 @@ The messages and stubs of the protocol are in ballpiston.v1.
 
 # fmt: off
 from ballpiston._version import __version__
-from ballpiston.client import Client, connect
+from ballpiston.client import Client, ServerStatus, connect
 from ballpiston.closed_forms import ClosedForms
 from ballpiston.collisions import Collisions
 from ballpiston.errors import (
@@ -30,7 +30,6 @@ from ballpiston.job import Job, JobCancelled, JobFailed, JobNotSucceeded
 from ballpiston.plan import Plan
 from ballpiston.point import Estimate, Point
 from ballpiston.result import Result, load
-from ballpiston.server_status import ServerStatus
 from ballpiston.specification import specification
 from ballpiston.watch import Update
 

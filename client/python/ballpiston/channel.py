@@ -34,7 +34,6 @@ from ballpiston.errors import PermissionDenied
 from ballpiston.server_address import grpc_target, is_loopback, is_socket
 
 _ENSEMBLES = "ballpiston.v1.EnsembleService"
-
 _RETRIES = {
     "maxAttempts": 4,
     "initialBackoff": "0.1s",
@@ -62,7 +61,6 @@ _ARGUMENTS: list[tuple[str, int | str]] = [
     ("grpc.max_receive_message_length", -1),  # the server decides how large its answers are
     ("grpc.service_config", json.dumps(_SERVICE_CONFIG)),
 ]
-
 _MOST_FILE_BYTES = 1 << 20
 _LONGEST_TOKEN = 256
 

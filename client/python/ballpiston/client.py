@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import uuid
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy.typing as npt
@@ -12,7 +13,7 @@ import numpy.typing as npt
 from ballpiston.closed_forms import ClosedForms
 from ballpiston.collisions import Collisions, columns_of, events_of
 from ballpiston.connection import Connection
-from ballpiston.fields import from_spelling
+from ballpiston.fields import from_spelling, record_of, shown, spelled
 from ballpiston.job import Job, check_labels
 from ballpiston.parameter_lists import INT64, UINT64, Numbers, Shapes, number_list
 from ballpiston.parameter_lists import real_number, shape_list, truth_value, whole_number
@@ -20,7 +21,6 @@ from ballpiston.plan import Plan
 from ballpiston.progress import progress_on_screen
 from ballpiston.result import Result
 from ballpiston.server_address import find_private_server
-from ballpiston.server_status import ServerStatus, server_status_of
 from ballpiston.settings import address_and_security
 from ballpiston.specification import question_of, specification, takes_keywords_of
 from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trace_pb2
@@ -74,6 +74,35 @@ def connect(
     return Client(Connection(private.address(), security, private=private, timeout=bound))
 
 
+@dataclass(frozen=True)
+class ServerStatus:
+    """The state of a server.
+
+    Attributes:
+        address: of the server, as the client was given it.
+        state: "serving", "draining" (no new jobs) or "store-failing" (the disk refuses writes).
+        version, engine_version: of the program, and of the part that decides the numbers.
+        workers, busy_workers: threads that compute.
+        queued_jobs, running_jobs: of all users.
+        principal, role: who you are to this server; the role is read, submit or admin.
+        limits: of the server by name, 0 for none, such as limits["max_points_per_job"].
+        message: everything, as the message ballpiston.v1.ServerStatus.
+    """
+
+    address: str
+    state: str
+    version: str
+    engine_version: str
+    workers: int
+    busy_workers: int
+    queued_jobs: int
+    running_jobs: int
+    principal: str
+    role: str
+    limits: dict[str, float]
+    message: Any = field(repr=False)
+
+
 class Client:
     """Asks one server. `ballpiston.connect()` makes it.
 
@@ -81,13 +110,10 @@ class Client:
     go on.
     """
 
+    address = shown(lambda of: str(of.address), "host:port or unix:PATH.", "_connection")
+
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
-
-    @property
-    def address(self) -> str:
-        """Of the server: host:port or unix:PATH."""
-        return self._connection.address
 
     def close(self) -> None:
         """Closes the connection: calls after it raise a ValueError. Jobs go on."""
@@ -306,7 +332,15 @@ class Client:
         """What the server is doing and what it permits. The first call to a server takes most of a
         second, because the server measures its speed."""
         message = self._connection.call(server_pb2.GetServerStatusRequest())
-        return server_status_of(self.address, message)
+        texts = ("version", "engine_version", "principal", "role")
+        numbers = ("workers", "busy_workers", "queued_jobs", "running_jobs")
+        return ServerStatus(
+            address=self.address,
+            state=spelled(message, "state"),
+            limits=record_of(message.limits),
+            message=message,
+            **{name: getattr(message, name) for name in (*texts, *numbers)},
+        )
 
 
 def _numbers_of(enum: Any, what: str, names: str | Iterable[str]) -> list[int]:

@@ -1,15 +1,7 @@
-"""A result as a JSON document, the one that `ballpiston result JOB --format json` prints:
-
-    {"client_version": "...",
-    "job": {...},
-    "points": [
-    {...},
-    {...}
-    ]}
-
-Messages have the protocol's own field names; fields with their default value are written too;
-64-bit integers are strings, as JSON of Protocol Buffers has it. And tables: files of named columns,
-.csv, .npz or .parquet.
+"""Files. A result is the JSON document that `ballpiston result JOB --format json` prints, one point
+a line: {"client_version": "...", "job": {...}, "points": [...]}. Messages have the protocol's own
+field names; fields with their default value are written too; 64-bit integers are strings, as JSON
+of Protocol Buffers has it. A table has named columns: .csv, .npz or .parquet.
 """
 
 import csv
@@ -92,7 +84,9 @@ def whole_file(path: Path) -> Iterator[Path]:
         yield path
         return
     path = path.resolve()  # symbolic links stay
-    mode = path.stat().st_mode if path.exists() else 0o666 & ~_current_umask()
+    umask = os.umask(0o077)
+    os.umask(umask)
+    mode = path.stat().st_mode if path.exists() else 0o666 & ~umask
     descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
     os.close(descriptor)
     temporary = Path(name)
@@ -138,9 +132,3 @@ def _cell(value: Any) -> Any:
     if not isinstance(value, float):
         return value
     return "" if np.isnan(value) else repr(value).removesuffix(".0")
-
-
-def _current_umask() -> int:
-    umask = os.umask(0o077)
-    os.umask(umask)
-    return umask

@@ -1,13 +1,7 @@
 """Turns a failed call, or the error of a failed job, into an exception of errors.py.
 
 The server attaches a google.rpc.Status with an ErrorInfo (the reason, as one word) and, if the
-request is wrong, a BadRequest with every violation. The text is that of the program `ballpiston`:
-
-    MESSAGE (REASON)                        without violations
-    FIELD: DESCRIPTION (REASON)             one violation
-    not valid, N violations (REASON):       several, one line each
-      FIELD: DESCRIPTION
-      and M more                            if the server left some out
+request is wrong, a BadRequest with every violation. The text is that of the program `ballpiston`.
 """
 
 import re
@@ -32,7 +26,7 @@ class Details:
     retry_delay: float = 0.0  # seconds
 
     def text(self, message: str) -> str:
-        """`message` with reason and violations, as the head of this file shows."""
+        """MESSAGE (REASON), or FIELD: DESCRIPTION (REASON), or a line for each violation."""
         reason = f" ({self.reason})" if self.reason else ""
         left_out = int(self.metadata.get("violations_left_out", 0))
         count = len(self.violations) + left_out

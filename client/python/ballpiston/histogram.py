@@ -1,5 +1,6 @@
 """Histograms and curves of a point, and how one of them is chosen."""
 
+from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -25,11 +26,6 @@ class Histogram:
         expected: exact probabilities of the bins, of "piston_energy" those of the limit
             delta -> 0; empty if there are none.
         expected_density: `expected` over the width of the bins, to be drawn beside `density`.
-
-    Example:
-        >>> alpha = result.histogram("alpha", sigma=+1)
-        >>> plt.stairs(alpha.density, alpha.edges)
-        >>> plt.plot(alpha.centers, alpha.expected_density)
     """
 
     name: str
@@ -51,10 +47,9 @@ class Histogram:
 def histograms_of(messages: Iterable[Any]) -> list[Histogram]:
     """Those of one point: the densities need the counts of both signs of an angle."""
     messages = list(messages)
-    totals: dict[tuple[str, float], float] = {}
+    totals: defaultdict[tuple[str, float], float] = defaultdict(float)
     for message in messages:
-        key = (message.name, message.time)
-        totals[key] = totals.get(key, 0.0) + float(sum(message.counts))
+        totals[message.name, message.time] += sum(message.counts)
     return [_histogram(message, totals[message.name, message.time]) for message in messages]
 
 

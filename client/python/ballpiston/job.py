@@ -64,13 +64,14 @@ class Job:
 
     Attributes:
         message: the message ballpiston.v1.EnsembleJob, as last seen.
+        answered_from_store: whether this job existed before it was submitted, and answered the same
+            question. The server says so in the answer to the submission only.
     """
 
     def __init__(self, connection: Connection, message: Any) -> None:
         self._connection = connection
         self.message = message
-        # The server says so in the answer to the submission only.
-        self._is_from_store = bool(message.answered_from_store)
+        self.answered_from_store = bool(message.answered_from_store)
 
     name = shown(lambda job: str(job.name), "By it `client.job(name)` finds the job again.")
     specification = shown(attrgetter("spec"), "The question, for client.submit.")
@@ -105,11 +106,6 @@ class Job:
         """Whether it has succeeded, failed or been cancelled by now."""
         return self.state in ("succeeded", "failed", "cancelled")
 
-    @property
-    def answered_from_store(self) -> bool:
-        """Whether this job existed before it was submitted, and answered the same question."""
-        return self._is_from_store
-
     def refresh(self) -> Job:
         """Asks the server for the job as it is now."""
         self.message = self._call(ensemble_pb2.GetEnsembleJobRequest(name=self.name))
@@ -134,7 +130,8 @@ class Job:
         """
         screen = progress_on_screen(progress)
         if self.answered_from_store and screen.is_visible:
-            screen.note(_from_store_text(self))
+            when = f", computed {self.ended:%Y-%m-%d %H:%M} UTC" if self.ended else ""
+            screen.note(f"answered from the store: {self.name}{when} (fresh=True computes anew)")
         try:
             with closing(screen):
                 self._end(watch_job(self._connection, self.name, screen))
@@ -163,9 +160,7 @@ class Job:
             raise TypeError("extend needs a target: give samples, collisions or tolerance")
         spec = spec_pb2.EnsembleSpec()
         spec.CopyFrom(self.refresh().specification)
-        estimate = spec.target.estimate
-        spec.target.Clear()
-        spec.target.estimate = estimate
+        spec.target.CopyFrom(type(spec.target)(estimate=spec.target.estimate))
         set_target(spec, samples=samples, collisions=collisions, tolerance=tolerance)
         request = ensemble_pb2.CreateEnsembleJobRequest(
             spec=spec,
@@ -201,7 +196,7 @@ class Job:
     def result_in(self, view: Any) -> Result:
         """`result` in a view of the protocol: BASIC has no histograms or curves."""
         self.refresh()
-        self.message.answered_from_store = self._is_from_store
+        self.message.answered_from_store = self.answered_from_store
         request = ensemble_pb2.ListResultsRequest(parent=self.name, page_size=_PAGE, view=view)
         points: list[Any] = []
         while True:
@@ -216,9 +211,8 @@ class Job:
     def cancel(self) -> Job:
         """Stops the job. Its finished points stay. Raises FailedPrecondition: it has already ended
         (reason JOB_ALREADY_ENDED)."""
-        request = ensemble_pb2.CancelEnsembleJobRequest(
-            name=self.name, request_id=str(uuid.uuid4())
-        )
+        key = str(uuid.uuid4())
+        request = ensemble_pb2.CancelEnsembleJobRequest(name=self.name, request_id=key)
         self.message = self._call(request)
         return self
 
@@ -273,10 +267,8 @@ class Job:
             raise
 
     def _update(self, **fields: Any) -> Job:
-        request = ensemble_pb2.UpdateEnsembleJobRequest(
-            job=ensemble_pb2.EnsembleJob(name=self.name, **fields),
-            update_mask={"paths": list(fields)},
-        )
+        job, mask = ensemble_pb2.EnsembleJob(name=self.name, **fields), {"paths": list(fields)}
+        request = ensemble_pb2.UpdateEnsembleJobRequest(job=job, update_mask=mask)
         self.message = self._call(request)
         return self
 
@@ -310,8 +302,3 @@ def _farewell(job: Job) -> str:
     server = "" if job._connection.private else f" --server {job._connection.address}"
     watch, cancel = (words.format(job.name, verb, server) for verb in ("watch", "cancel"))
     return f"The job goes on.\n  watch it again:  {watch}\n  cancel it:       {cancel}"
-
-
-def _from_store_text(job: Job) -> str:
-    when = f", computed {job.ended:%Y-%m-%d %H:%M} UTC" if job.ended else ""
-    return f"answered from the store: {job.name}{when} (fresh=True computes anew)"

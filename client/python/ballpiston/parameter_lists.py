@@ -27,10 +27,7 @@ from ballpiston.point import PARAMETERS
 
 Numbers = Union[float, str, Iterable[float], "npt.NDArray[np.floating]"]
 Shapes = Union[int, str, Iterable[Union[int, str]]]
-
-# A pandas.DataFrame, a mapping of columns, or an iterable of rows that are mappings.
-Points = Any
-
+Points = Any  # a pandas.DataFrame, a mapping of columns, or an iterable of mappings
 # Least and most of the protocol's integers.
 INT64 = (-(2**63), 2**63 - 1)
 UINT64 = (0, 2**64 - 1)

@@ -80,13 +80,9 @@ class PrivateServer:
         """Its address, unix:PATH. Starts the server if it does not run. Raises NoPrivateServer: the
         program cannot be run, or cannot start the server."""
         try:
+            command, nothing = [self.program, "server", "address"], subprocess.DEVNULL
             answer = subprocess.run(
-                [self.program, "server", "address"],
-                stdin=subprocess.DEVNULL,
-                capture_output=True,
-                text=True,
-                timeout=_START_TIME,
-                check=False,
+                command, stdin=nothing, capture_output=True, text=True, timeout=_START_TIME
             )
         except (OSError, subprocess.TimeoutExpired) as error:
             raise NoPrivateServer(f"cannot start the private server: {error}") from error

@@ -28,7 +28,6 @@ from ballpiston.progress import Progress, fraction_of, progress_in
 from ballpiston.v1 import ensemble_pb2, ensemble_pb2_grpc
 
 _LONGEST_CONNECTING = 1.0  # seconds
-
 _JOB = ensemble_pb2.EnsembleJob
 
 
