@@ -20,8 +20,6 @@ NAME of an angle's histogram ends with _plus or _minus, for sigma +1 and -1. Sho
 curves are padded with NaN. An array that would have no value at all is left out.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Sequence
 from operator import attrgetter
@@ -32,9 +30,8 @@ import numpy.typing as npt
 
 from ballpiston._version import __version__
 from ballpiston.document import json_of
-from ballpiston.fields import FloatArray, column, value_of
+from ballpiston.fields import FloatArray, column, spelled, value_of
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS, parameters_of
-from ballpiston.spelling import spelled
 
 Arrays = dict[str, npt.NDArray[Any]]
 

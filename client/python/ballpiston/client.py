@@ -5,30 +5,29 @@ from __future__ import annotations
 import sys
 import uuid
 from collections.abc import Iterable, Iterator, Mapping
-from types import TracebackType
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy.typing as npt
 
 from ballpiston.closed_forms import ClosedForms
-from ballpiston.collisions import Collisions
+from ballpiston.collisions import Collisions, columns_of, events_of
 from ballpiston.connection import Connection
+from ballpiston.fields import from_spelling, record_of, shown, spelled
 from ballpiston.job import Job, check_labels
-from ballpiston.parameter_lists import INT32, INT64, UINT64, Numbers, Shapes, number_list
+from ballpiston.parameter_lists import INT64, UINT64, Numbers, Shapes, number_list
 from ballpiston.parameter_lists import real_number, shape_list, truth_value, whole_number
 from ballpiston.plan import Plan
-from ballpiston.private_server import find_private_server
 from ballpiston.progress import progress_on_screen
 from ballpiston.result import Result
+from ballpiston.server_address import find_private_server
 from ballpiston.settings import address_and_security
-from ballpiston.server_status import ServerStatus, server_status_of
 from ballpiston.specification import question_of, specification, takes_keywords_of
-from ballpiston.spelling import from_spelling
-from ballpiston.trace import columns_of, events_of
 from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trace_pb2
 
 _COLLECTION = "ensembleJobs/"
 _PAGE = 1000
+_UNLIMITED = 1e9  # seconds
 # The keywords that submit and run have beside those of the question.
 _JOB_KEYWORDS = ("fresh", "priority", "request_id", "labels", "progress")
 
@@ -53,28 +52,55 @@ def connect(
         tls: TLS; with the authorities of this system [BALLPISTON_TLS=1].
         token_file: file with your token, which other users cannot read [BALLPISTON_TOKEN_FILE, or
             the token itself in BALLPISTON_TOKEN]. A token is sent over TLS or to a loopback address.
-        timeout: seconds for each single call; watches and traces have none.
+        timeout: seconds for each single call, above 0, or math.inf; watches and traces have none.
 
     If an argument is not given, the variable in brackets is used, else the config file. Over a Unix
     socket, the private server's too, both are ignored.
 
     Raises:
-        ValueError: not an address, or a file that cannot be used.
+        ValueError: not an address or not a time, or a file that cannot be used.
         PermissionDenied: other users can read the token file.
         NoPrivateServer: the private server cannot be started.
-
-    Example:
-        >>> client = ballpiston.connect()
-        >>> with ballpiston.connect("lab.example.org:50051", ca="authority.pem",
-        ...                         token_file="ada.token") as client:
-        ...     client.status()
     """
     arguments = {"address": address, "ca": ca, "tls": tls, "token_file": token_file}
+    seconds = real_number("timeout", timeout)
+    if not seconds > 0:
+        raise ValueError(f"timeout is {timeout!r} s; permitted: above 0, or math.inf")
+    bound = seconds if seconds < _UNLIMITED else None
     named, security = address_and_security({k: v for k, v in arguments.items() if v is not None})
     if named:
-        return Client(Connection(named, security, timeout=timeout))
+        return Client(Connection(named, security, timeout=bound))
     private = find_private_server()
-    return Client(Connection(private.address(), security, private=private, timeout=timeout))
+    return Client(Connection(private.address(), security, private=private, timeout=bound))
+
+
+@dataclass(frozen=True)
+class ServerStatus:
+    """The state of a server.
+
+    Attributes:
+        address: of the server, as the client was given it.
+        state: "serving", "draining" (no new jobs) or "store-failing" (the disk refuses writes).
+        version, engine_version: of the program, and of the part that decides the numbers.
+        workers, busy_workers: threads that compute.
+        queued_jobs, running_jobs: of all users.
+        principal, role: who you are to this server; the role is read, submit or admin.
+        limits: of the server by name, 0 for none, such as limits["max_points_per_job"].
+        message: everything, as the message ballpiston.v1.ServerStatus.
+    """
+
+    address: str
+    state: str
+    version: str
+    engine_version: str
+    workers: int
+    busy_workers: int
+    queued_jobs: int
+    running_jobs: int
+    principal: str
+    role: str
+    limits: dict[str, float]
+    message: Any = field(repr=False)
 
 
 class Client:
@@ -82,41 +108,25 @@ class Client:
 
     It may be shared between threads. As a context manager it closes the connection at the end; jobs
     go on.
-
-    Example:
-        >>> with ballpiston.connect() as client:
-        ...     result = client.run("first-hit", rho=0.5296, delta=[0.1, 0.05], epsilon=0.125,
-        ...                         exponent=[1, 2], samples=1e5, seed=7)
-        >>> result["mean_hit_time"]
     """
+
+    address = shown(lambda of: str(of.address), "host:port or unix:PATH.", "_connection")
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
 
-    @property
-    def address(self) -> str:
-        """Of the server: host:port or unix:PATH."""
-        return self._connection.address
-
     def close(self) -> None:
-        """Closes the connection. Jobs go on."""
+        """Closes the connection: calls after it raise a ValueError. Jobs go on."""
         self._connection.close()
 
     def __enter__(self) -> Client:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def __repr__(self) -> str:
         return f"<client of {self.address}>"
-
-    # Questions
 
     @takes_keywords_of(specification)
     def submit(
@@ -148,20 +158,23 @@ class Client:
             TypeError: a keyword that does not exist; the message suggests the nearest one.
             InvalidSpecification: wrong values; `violations` lists all of them.
             ResourceExhausted: a limit of the server.
-
-        Example:
-            >>> job = client.submit("equilibrium", rho=0.5296, delta="0.05:0.2:4",
-            ...                     collisions=1e5, model="billiard")
-            >>> job.watch()["mean_free_time_ball_piston"]
         """
         request = ensemble_pb2.CreateEnsembleJobRequest(
             spec=question_of(experiment, question, _JOB_KEYWORDS),
             request_id=str(request_id or uuid.uuid4()),
             fresh=truth_value("fresh", fresh),
-            priority=whole_number("priority", priority, *INT32),
+            priority=whole_number("priority", priority, -100, 100),
             labels=check_labels(labels),
         )
-        return Job(self._connection, self._create(request))
+        try:
+            return Job(self._connection, self._connection.call(request))
+        except KeyboardInterrupt:
+            print(
+                "The server may have accepted the job. With "
+                f'request_id="{request.request_id}" the same call returns this job.',
+                file=sys.stderr,
+            )
+            raise
 
     @takes_keywords_of(submit)
     def run(self, experiment: Any, *, progress: bool | str = True, **question: Any) -> Result:
@@ -179,23 +192,13 @@ class Client:
 
     @takes_keywords_of(specification)
     def plan(self, experiment: Any, **question: Any) -> Plan:
-        """What a question would cost with each model, and which model would answer. Runs nothing.
-
-        Example:
-            >>> client.plan("energy-relaxation", rho=0.5296, delta=0.0125,
-            ...             tolerance=0.01)
-        """
+        """What a question would cost with each model, and which one would answer. Runs nothing."""
         request = ensemble_pb2.PlanEnsembleJobRequest(spec=question_of(experiment, question))
         return Plan(self._connection.call(request))
 
-    # Jobs
-
     def job(self, name: str) -> Job:
-        """The job of this name, ensembleJobs/ID or the ID alone.
-
-        Raises:
-            NotFound: there is no such job, or it belongs to another user.
-        """
+        """The job of this name, ensembleJobs/ID or the ID alone. Raises NotFound: there is no such
+        job, or it belongs to another user."""
         if not isinstance(name, str):
             raise TypeError(f"name has to be a str, such as job.name, not {name!r}")
         full = name if name.startswith(_COLLECTION) else _COLLECTION + name
@@ -208,7 +211,7 @@ class Client:
         state: str | Iterable[str] = (),
         experiment: str | Iterable[str] = (),
         labels: Mapping[str, str] | None = None,
-        limit: int | None = 50,
+        limit: int | None = None,
     ) -> list[Job]:
         """Your jobs, the newest first.
 
@@ -236,8 +239,6 @@ class Client:
                 break
         return jobs
 
-    # Without a job
-
     def analytic(
         self,
         rho: Numbers,
@@ -248,7 +249,8 @@ class Client:
         beta: Numbers = (),
         temperature: Numbers = (),
     ) -> ClosedForms:
-        """Closed forms at every pair of rho and delta, at most 10,000 pairs. Samples nothing.
+        """Closed forms at every pair of rho and delta, at most 10,000 pairs and 100,000 values.
+        Samples nothing.
 
         Args:
             rho, delta: as in a question.
@@ -256,9 +258,6 @@ class Client:
                 conditional mean free time.
             outgoing_epsilon: energies after the collision, between 0 and 1/2: adds the kernel.
             beta, temperature: 1e-120 to 1e120; adds canonical averages.
-
-        Example:
-            >>> client.analytic(0.5296, [0.1, 0.2])["tau_ball_piston"]
         """
         lists = {"rho": rho, "delta": delta, "epsilon": epsilon, "beta": beta}
         lists |= {"outgoing_epsilon": outgoing_epsilon, "temperature": temperature}
@@ -296,9 +295,8 @@ class Client:
             >>> events = client.trace(rho=0.5296, delta=0.2, events=1000)
             >>> pandas.DataFrame(events).groupby("event")["free_time"].mean()
         """
-        return events_of(
-            self._connection, _orbit_request(rho, delta, events, seed, cells, temperature)
-        )
+        orbit = _orbit_request(rho, delta, events, seed, cells, temperature)
+        return events_of(self._connection, orbit)
 
     @takes_keywords_of(trace)
     def trace_arrays(self, *fields: str, **orbit: Any) -> dict[str, npt.NDArray[Any]]:
@@ -310,17 +308,13 @@ class Client:
 
         Raises:
             ValueError: an event has no such field.
-
-        Example:
-            >>> orbit = client.trace_arrays("event", "free_time", rho=0.5296, delta=0.2, events=1e5)
-            >>> np.nanmean(orbit["free_time"][orbit["event"] == "ball_piston"])
         """
         return columns_of(self._connection, _orbit_request(**orbit), fields)
 
     @takes_keywords_of(specification)
     def sample(self, experiment: Any, **question: Any) -> Collisions:
         """The collisions of a point's samples, for observables of one's own: those that `run` with
-        the same arguments averages.
+        the same arguments averages, of "equilibrium" with verify=True.
 
         Args:
             experiment: one with a ball-piston pair, with the keywords of
@@ -338,20 +332,15 @@ class Client:
         """What the server is doing and what it permits. The first call to a server takes most of a
         second, because the server measures its speed."""
         message = self._connection.call(server_pb2.GetServerStatusRequest())
-        return server_status_of(self.address, message)
-
-    def _create(self, request: Any) -> Any:
-        """One request id for all attempts: a server that accepted the job and stopped before it
-        could answer does not get a second one."""
-        try:
-            return self._connection.call(request)
-        except KeyboardInterrupt:
-            print(
-                "The server may have accepted the job. With "
-                f'request_id="{request.request_id}" the same call returns this job.',
-                file=sys.stderr,
-            )
-            raise
+        texts = ("version", "engine_version", "principal", "role")
+        numbers = ("workers", "busy_workers", "queued_jobs", "running_jobs")
+        return ServerStatus(
+            address=self.address,
+            state=spelled(message, "state"),
+            limits=record_of(message.limits),
+            message=message,
+            **{name: getattr(message, name) for name in (*texts, *numbers)},
+        )
 
 
 def _numbers_of(enum: Any, what: str, names: str | Iterable[str]) -> list[int]:

@@ -1,17 +1,11 @@
 """The paper's closed forms at pairs of rho and delta, as NumPy arrays."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from ballpiston.fields import FloatArray, column
-from ballpiston.suggestion import no_such
+from ballpiston.fields import FloatArray, column, frame_of, no_such
 from ballpiston.v1 import analytic_pb2
-
-if TYPE_CHECKING:
-    import pandas
 
 
 def _numbers(message: Any) -> tuple[str, ...]:
@@ -71,20 +65,17 @@ class ClosedForms:
             raise KeyError(no_such("closed form", name, "this answer", self._arrays))
         return self._arrays[name].copy()
 
-    def to_frame(self) -> pandas.DataFrame:
+    def to_frame(self) -> Any:
         """A pandas DataFrame: one row for each pair and, if there are energies or temperatures, one
         for each of these. The kernel is left out. Needs pandas."""
-        import pandas
-
         rows = []
         for point in self.message.points:
             pair = {name: getattr(point, name) for name in _PAIR}
-            parts = [(_ENERGY, e) for e in point.energies] + [
-                (_CANONICAL, c) for c in point.canonical
-            ]
+            parts = [(_ENERGY, e) for e in point.energies]
+            parts += [(_CANONICAL, c) for c in point.canonical]
             for fields, part in parts or [((), None)]:
                 rows.append(pair | {name: getattr(part, name) for name in fields})
-        return pandas.DataFrame(rows)
+        return frame_of(rows)
 
     def __repr__(self) -> str:
         return f"<closed forms at {len(self)} pairs: {', '.join(self.names)}>"

@@ -8,19 +8,57 @@ OUT ends with .csv, .npz or .parquet. The command line starts this program after
 file and the Python modules that the file needs.
 """
 
-from __future__ import annotations
-
 import json
+import re
+import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
+from ballpiston import errors
 from ballpiston.client import connect
-from ballpiston.errors import NotFound
+from ballpiston.document import npz_of, write_table
 from ballpiston.estimates_table import estimates_table
-from ballpiston.program import run_program
 from ballpiston.result import load
-from ballpiston.table_file import npz_of, write_table
+
+# The exit codes of the program ballpiston; the first class that an error belongs to counts.
+_EXIT_CODES: list[tuple[type[BaseException], int]] = [
+    (errors.InvalidArgument, 2),
+    (errors.Unavailable, 3),
+    (errors.NotFound, 5),
+    (errors.PermissionDenied, 6),
+    (errors.Unauthenticated, 6),
+    (errors.Error, 4),
+    (KeyboardInterrupt, 130),
+    (OSError, 4),
+    (ValueError, 2),
+    (TypeError, 2),
+]
+
+
+def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str]) -> int:
+    """Prints the paths of the files that `main` writes. Returns the exit code."""
+    try:
+        # Until here SIGTERM ends Python in silence, and SIGINT would print a traceback.
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
+        for path in main(arguments):
+            print(path)
+    except tuple(kind for kind, _ in _EXIT_CODES) as error:
+        if not isinstance(error, KeyboardInterrupt):
+            print(f"ballpiston: {_with_flags(error)}", file=sys.stderr)
+        return next(code for kind, code in _EXIT_CODES if isinstance(error, kind))
+    return 0
+
+
+def _with_flags(error: BaseException) -> str:
+    """The message, with flags in place of the specification's fields: --rho for spec.grid.rho[0]."""
+    message = str(error)
+    if isinstance(error, OSError) and error.strerror:
+        message = ": ".join(filter(None, [error.filename, error.strerror]))
+    for field, _ in getattr(error, "violations", []):
+        flag = re.sub(r"\[\d+\]$", "", field).rpartition(".")[2].replace("_", "-")
+        message = message.replace(f"{field}:", f"--{flag}:")
+    return message
 
 
 def _export(out: Path, *words: str) -> list[Path]:
@@ -29,7 +67,7 @@ def _export(out: Path, *words: str) -> list[Path]:
         named = [client.job(word) for word in words if "=" not in word]
         jobs = named or client.jobs(labels=labels, limit=None)
         if labels and not jobs:
-            raise NotFound(f"--label {' --label '.join(words)}: no job has these labels")
+            raise errors.NotFound(f"--label {' --label '.join(words)}: no job has these labels")
         write_table(out, estimates_table(jobs))
     return [out]
 

@@ -5,24 +5,22 @@ A private server may stop, idle, just as a call arrives, or be killed: then it i
 the call is repeated once. So every call that goes through `call` has to be safe to repeat.
 """
 
-from __future__ import annotations
-
+import _thread
+import queue
+import sys
 import threading
 import time
 import weakref
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Generator
+from contextlib import suppress
 from typing import Any
 
 import grpc
 
-from ballpiston.channel import open_channel
-from ballpiston.channel_security import ChannelSecurity, Token
-from ballpiston.connection_hint import connection_hint
+from ballpiston.channel import ChannelSecurity, Token, connection_hint, open_channel
 from ballpiston.error_details import from_rpc_error
 from ballpiston.errors import Error, Unavailable
-from ballpiston.private_server import PrivateServer
-from ballpiston.server_address import literal_address
+from ballpiston.server_address import PrivateServer, literal_address
 from ballpiston.v1.analytic_pb2_grpc import AnalyticServiceStub
 from ballpiston.v1.ensemble_pb2_grpc import EnsembleServiceStub
 from ballpiston.v1.server_pb2_grpc import ServerServiceStub
@@ -34,9 +32,8 @@ _REVIVE_SECONDS = 10.0
 
 class Connection:
     """A channel to the server at `address`. `private`: the server is the user's private one, and
-    may be started again. `timeout` bounds each single call, in seconds. Safe to share between
-    threads.
-    """
+    may be started again. `timeout` bounds each single call, in seconds; None: no bound. Safe to
+    share between threads."""
 
     def __init__(
         self,
@@ -44,7 +41,7 @@ class Connection:
         security: ChannelSecurity,
         *,
         private: PrivateServer | None = None,
-        timeout: float = 60.0,
+        timeout: float | None = 60.0,
     ) -> None:
         self.address = address if security.has_tls else literal_address(address)
         self.security = security
@@ -55,42 +52,45 @@ class Connection:
         # Also at the interpreter's exit: gRPC's own destructor comes after its threads were killed,
         # and would wait forever for a lock that one of them held.
         self.close = weakref.finalize(self, self.channel.close)
-        self._methods: dict[str, Callable[..., Any]] = {}
+        self._methods: dict[str, Any] = {}
         for service in _SERVICES:
             self._methods |= vars(service(self.channel))
 
     def call(self, request: Any) -> Any:
         """The answer to a call that may be repeated."""
-        try:
-            return self.call_once(request)
-        except Unavailable as error:
-            if self.private is None or error.code != "UNAVAILABLE":
-                raise
-            time.sleep(error.retry_delay)
-        self.revive()
-        return self.call_once(request)
+        return self._repeated(lambda: self.call_once(request))
 
     def call_once(self, request: Any, timeout: float | None = None) -> Any:
         """The answer to a single attempt, apart from those of the channel's retry policy."""
+        options = {"timeout": timeout or self.timeout, "metadata": self.metadata()}
         try:
-            seconds = self.timeout if timeout is None else timeout
-            return self._method_of(request)(request, timeout=seconds, metadata=self.metadata())
+            return _off_main(self._method_of(request), request, **options)
         except grpc.RpcError as error:
             raise self.error_of(error) from None
 
-    def open_stream(self, request: Any) -> Any:
-        """The messages of a streaming call. From the main thread the call begins on a thread of its
-        own, which Ctrl-C does not interrupt: a call that is interrupted while it begins is never
-        read by gRPC, and the interpreter would wait for it forever at its exit."""
-        if threading.current_thread() is not threading.main_thread():  # it may outlive the main one
-            return self._method_of(request)(request, metadata=self.metadata())
-        with ThreadPoolExecutor(max_workers=1) as thread:
-            begun = thread.submit(self._method_of(request), request, metadata=self.metadata())
-            try:
-                return begun.result()
-            except KeyboardInterrupt:
-                begun.result().cancel()
-                raise
+    def stream(self, request: Any) -> Generator[Any, None, None]:
+        """The messages of a streaming call. It is cancelled when the iterator is closed."""
+        call = _off_main(self._method_of(request), request, metadata=self.metadata())
+        try:
+            while (message := _off_main(next, call, None)) is not None:
+                yield message
+        except grpc.RpcError as error:
+            raise self.error_of(error) from None
+        finally:
+            _off_main(call.cancel)
+
+    def stream_again(self, request: Any) -> Generator[Any, None, None]:
+        """`stream` for a call that may be repeated before its first message arrives; later a
+        repetition would begin at the start again."""
+
+        def begun() -> tuple[Any, Generator[Any, None, None]]:
+            messages = self.stream(request)
+            return next(messages, None), messages
+
+        first, others = self._repeated(begun)
+        if first is not None:
+            yield first
+            yield from others
 
     def metadata(self) -> list[tuple[str, str]]:
         """The metadata of a call: the token, if one is to be sent."""
@@ -103,27 +103,56 @@ class Connection:
         if not isinstance(error, Unavailable) or error.reason:
             return error
         message = str(error)
-        hint = connection_hint(self.address, self.security, message)
+        hint = "" if self.private else connection_hint(self.address, self.security, message)
         text = f"no answer from the server at {self.address}: {message}{hint}"
         return type(error)(text, code=error.code)
 
     def revive(self, wait: float = _REVIVE_SECONDS) -> None:
         """Starts a private server again if it is gone. Then waits, at most `wait` seconds, until
         the channel is connected: it may be pausing after its last attempt, and a call would fail at
-        once.
-
-        Raises:
-            NoPrivateServer: the private server cannot be started.
-        """
+        once. Raises NoPrivateServer: the private server cannot be started."""
         if self.private is not None:
             self.private.address()
-        ready = grpc.channel_ready_future(self.channel)
-        try:
-            ready.result(timeout=wait)
-        except grpc.FutureTimeoutError:
-            pass
-        finally:
-            ready.cancel()
+        _off_main(self._wait_until_connected, wait)
 
-    def _method_of(self, request: Any) -> Callable[..., Any]:
+    def _wait_until_connected(self, longest: float) -> None:
+        ready = grpc.channel_ready_future(self.channel)
+        with suppress(grpc.FutureTimeoutError):
+            ready.result(timeout=longest)
+        ready.cancel()
+
+    def _repeated(self, attempt: Callable[[], Any]) -> Any:
+        """What the attempt returns, or a second one after the private server was started again."""
+        try:
+            return attempt()
+        except Unavailable as error:
+            if self.private is None or error.code != "UNAVAILABLE":
+                raise
+            time.sleep(error.retry_delay)
+        self.revive()
+        return attempt()
+
+    def _method_of(self, request: Any) -> Any:
         return self._methods[type(request).__name__.removesuffix("Request")]
+
+
+def _off_main(function: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
+    """What the function returns. From the main thread it runs on a thread of its own, which Ctrl-C
+    does not interrupt. Interrupted between two of its lines, gRPC may keep a lock for ever, and
+    every later call of the channel would wait for it. The main thread waits at a SimpleQueue, which
+    an interruption leaves intact. A single call that was interrupted ends by itself."""
+    if threading.current_thread() is not threading.main_thread() or sys.is_finalizing():
+        return function(*arguments, **options)
+    ended: queue.SimpleQueue[tuple[Any, BaseException | None]] = queue.SimpleQueue()
+
+    def run() -> None:
+        try:
+            ended.put((function(*arguments, **options), None))
+        except BaseException as error:
+            ended.put((None, error))
+
+    _thread.start_new_thread(run, ())
+    value, error = ended.get()
+    if error is not None:
+        raise error
+    return value

@@ -1,16 +1,8 @@
 """Turns a failed call, or the error of a failed job, into an exception of errors.py.
 
 The server attaches a google.rpc.Status with an ErrorInfo (the reason, as one word) and, if the
-request is wrong, a BadRequest with every violation. The text is that of the program `ballpiston`:
-
-    MESSAGE (REASON)                        without violations
-    FIELD: DESCRIPTION (REASON)             one violation
-    not valid, N violations (REASON):       several, one line each
-      FIELD: DESCRIPTION
-      and M more                            if the server left some out
+request is wrong, a BadRequest with every violation. The text is that of the program `ballpiston`.
 """
-
-from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
@@ -34,9 +26,9 @@ class Details:
     retry_delay: float = 0.0  # seconds
 
     def text(self, message: str) -> str:
-        """`message` with reason and violations, as the head of this file shows."""
+        """MESSAGE (REASON), or FIELD: DESCRIPTION (REASON), or a line for each violation."""
         reason = f" ({self.reason})" if self.reason else ""
-        left_out = self._violations_left_out()
+        left_out = int(self.metadata.get("violations_left_out", 0))
         count = len(self.violations) + left_out
         if count == 0:
             return message + reason
@@ -45,10 +37,6 @@ class Details:
             return lines[0] + reason
         more = f"\n  and {left_out} more" if left_out > 0 else ""
         return f"not valid, {count} violations{reason}:" + "".join(f"\n  {x}" for x in lines) + more
-
-    def _violations_left_out(self) -> int:
-        text = self.metadata.get("violations_left_out", "")
-        return int(text) if text.isdecimal() else 0
 
 
 def details_of(status: Any) -> Details:
@@ -94,16 +82,9 @@ def _class_of(code: str, details: Details) -> type[errors.Error]:
 
 
 def _details_of_call(rpc_error: Any) -> Details:
-    for key, value in rpc_error.trailing_metadata() or ():
-        if key == _DETAILS_KEY:
-            return _parsed(value)
-    return Details()
-
-
-def _parsed(data: bytes) -> Details:
     status = status_pb2.Status()
     try:
-        status.ParseFromString(data)
+        status.ParseFromString(dict(rpc_error.trailing_metadata() or ()).get(_DETAILS_KEY, b""))
     except Exception:  # the class of the error depends on the implementation of protobuf
         return Details()
     return details_of(status)

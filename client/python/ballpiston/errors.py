@@ -1,16 +1,8 @@
 """Exceptions. Every one that a server or the connection causes is a subclass of Error.
 
-    try:
-        job = client.submit("equilibrium", rho=0.5296, delta=[0.1, 0.7])
-    except ballpiston.InvalidSpecification as error:
-        for field, description in error.violations:
-            print(field, description)        # spec.grid.delta[1]  delta is 0.7; permitted: ...
-
 Mistakes in a call itself, such as a wrong keyword or a text in place of a number, are TypeError and
 ValueError. They are raised before anything is sent.
 """
-
-from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 

@@ -1,18 +1,15 @@
 """The estimates of many jobs in one table: a row for each estimate of each point."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 
+from ballpiston.document import Table
 from ballpiston.errors import NotFound, ResultsExpired
 from ballpiston.job import Job
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
-from ballpiston.spelling import spelled
-from ballpiston.table_file import Table
 from ballpiston.v1 import ensemble_pb2
 from ballpiston.watch import has_ended
 
@@ -24,11 +21,8 @@ _COLUMNS = (*_OF_JOB, "index", *PARAMETERS, "model", "samples", "name", "value",
 def estimates_table(jobs: Iterable[Job]) -> Table:
     """Columns of equal length, NaN or "" where a value is absent: of each job the points that are
     finished. A note on standard error names each job that has not ended, and each that is left out
-    because its results have expired or it was deleted meanwhile.
-
-    Raises:
-        ResultsExpired, NotFound: every job would be left out.
-    """
+    because its results have expired or it was deleted meanwhile. Raises ResultsExpired, NotFound:
+    every job would be left out."""
     rows: list[dict[str, Any]] = []
     left_out: list[ResultsExpired | NotFound] = []
     count = 0
@@ -39,7 +33,8 @@ def estimates_table(jobs: Iterable[Job]) -> Table:
             rows += _rows(job)
         except (ResultsExpired, NotFound) as error:
             left_out.append(error)
-            _note(f"{job.name} is left out: {str(error).splitlines()[0]}")
+            why = str(error).splitlines()[0]
+            print(f"ballpiston: {job.name} is left out: {why}", file=sys.stderr)
     if left_out and len(left_out) == count:
         raise left_out[-1]
     return {
@@ -48,19 +43,15 @@ def estimates_table(jobs: Iterable[Job]) -> Table:
     }
 
 
-def _note(text: str) -> None:
-    print(f"ballpiston: {text}", file=sys.stderr)
-
-
 def _rows(job: Job) -> Iterator[dict[str, Any]]:
     result = job.result_in(ensemble_pb2.ListResultsRequest.BASIC)
     if not has_ended(job.message.state):
-        state, points = spelled(job.message, "state"), job.message.progress.points
-        _note(f"{job.name} is still {state}: {len(result)} of {points} points are finished")
+        finished = f"{len(result)} of {job.message.progress.points} points are finished"
+        print(f"ballpiston: {job.name} is still {result.state}: {finished}", file=sys.stderr)
     of_job = {
         "job": job.name,
         "labels": " ".join(f"{key}={value}" for key, value in sorted(job.labels.items())),
-        "state": job.state,
+        "state": result.state,
         "experiment": job.experiment,
         "seed": str(job.specification.seed),  # it may have more digits than a float
         "engine_version": job.message.engine_version,

@@ -1,15 +1,13 @@
-"""Histograms of a point, and how one of them is chosen."""
+"""Histograms and curves of a point, and how one of them is chosen."""
 
-from __future__ import annotations
-
+from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ballpiston.fields import FloatArray, value_of
-from ballpiston.suggestion import no_such
+from ballpiston.fields import FloatArray, column, no_such, value_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +26,6 @@ class Histogram:
         expected: exact probabilities of the bins, of "piston_energy" those of the limit
             delta -> 0; empty if there are none.
         expected_density: `expected` over the width of the bins, to be drawn beside `density`.
-
-    Example:
-        >>> alpha = result.histogram("alpha", sigma=+1)
-        >>> plt.stairs(alpha.density, alpha.edges)
-        >>> plt.plot(alpha.centers, alpha.expected_density)
     """
 
     name: str
@@ -54,21 +47,17 @@ class Histogram:
 def histograms_of(messages: Iterable[Any]) -> list[Histogram]:
     """Those of one point: the densities need the counts of both signs of an angle."""
     messages = list(messages)
-    totals: dict[tuple[str, float], float] = {}
+    totals: defaultdict[tuple[str, float], float] = defaultdict(float)
     for message in messages:
-        key = (message.name, message.time)
-        totals[key] = totals.get(key, 0.0) + float(sum(message.counts))
+        totals[message.name, message.time] += sum(message.counts)
     return [_histogram(message, totals[message.name, message.time]) for message in messages]
 
 
 def choose_histogram(
     histograms: list[Histogram], name: str, sigma: int | None, time: float | None
 ) -> Histogram:
-    """The only one of this name and sign; of several times the nearest one.
-
-    Raises:
-        KeyError: there is none, or several; the message lists those to choose from.
-    """
+    """The only one of this name and sign; of several times the nearest one. Raises KeyError: there
+    is none, or several; the message lists those to choose from."""
     named = [h for h in histograms if h.name == name]
     if not named:
         raise KeyError(no_such("histogram", name, "this point", (h.name for h in histograms)))
@@ -109,3 +98,57 @@ def _histogram(message: Any, total: float) -> Histogram:
         expected=expected,
         expected_density=expected / width,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A measured function.
+
+    Attributes:
+        name: "survival", the probability that ball and piston have not met up to this time;
+            "energy_autocorrelation"; "mean_energy"; "temperature_profile" of a gas.
+        time: in cells over unit speed; None of a function of the position.
+        position: in cells from the left reservoir; None of a function of time.
+        value: of the function.
+        standard_error: one sigma; NaN where there is none.
+        batches: how certain the standard error is, as in an estimate; NaN where it is not stated.
+        limit: what the limit delta -> 0 gives here; NaN where it gives nothing.
+    """
+
+    name: str
+    time: FloatArray | None
+    position: FloatArray | None
+    value: FloatArray
+    standard_error: FloatArray
+    batches: FloatArray
+    limit: FloatArray
+
+    @property
+    def x(self) -> FloatArray:
+        """The times or the positions."""
+        if self.time is not None:
+            return self.time
+        return np.empty(0) if self.position is None else self.position
+
+
+def curve_of(message: Any) -> Curve:
+    """Of a message ballpiston.v1.Curve."""
+    points = message.points
+    is_of_position = any(point.HasField("position") for point in points)
+    return Curve(
+        name=message.name,
+        time=None if is_of_position else column(points, "time"),
+        position=column(points, "position") if is_of_position else None,
+        value=column(points, "value"),
+        standard_error=column(points, "standard_error"),
+        batches=column(points, "batches"),
+        limit=column(points, "limit"),
+    )
+
+
+def choose_curve(messages: Iterable[Any], name: str) -> Curve:
+    """The curve of this name. Raises KeyError: there is none."""
+    by_name = {message.name: message for message in messages}
+    if name not in by_name:
+        raise KeyError(no_such("curve", name, "this point", by_name))
+    return curve_of(by_name[name])

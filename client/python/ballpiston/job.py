@@ -7,21 +7,21 @@ import os
 import sys
 import uuid
 from collections.abc import AsyncIterator, Mapping
+from contextlib import closing, suppress
 from datetime import datetime, timezone
-from typing import Any
+from operator import attrgetter
+from typing import Any, cast
 
-from ballpiston.async_watch import Update, watch_updates
 from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
 from ballpiston.errors import Error, NotFound, ResultsExpired
-from ballpiston.fields import value_of
-from ballpiston.progress import Progress, fraction_of, progress_on_screen
+from ballpiston.fields import shown, spelled, value_of
+from ballpiston.progress import fraction_of, progress_on_screen
 from ballpiston.result import Result
 from ballpiston.result_table import html_table
 from ballpiston.specification import set_target
-from ballpiston.spelling import spelled
 from ballpiston.v1 import ensemble_pb2, spec_pb2
-from ballpiston.watch import has_ended, watch_job
+from ballpiston.watch import Update, has_ended, watch_job, watch_updates
 
 _PAGE = 1000
 _GLANCE_SECONDS = 2.0  # for a notebook that shows a job
@@ -64,31 +64,35 @@ class Job:
 
     Attributes:
         message: the message ballpiston.v1.EnsembleJob, as last seen.
+        answered_from_store: whether this job existed before it was submitted, and answered the same
+            question. The server says so in the answer to the submission only.
     """
 
     def __init__(self, connection: Connection, message: Any) -> None:
         self._connection = connection
         self.message = message
-        # The server says so in the answer to the submission only.
-        self._is_from_store = bool(message.answered_from_store)
+        self.answered_from_store = bool(message.answered_from_store)
 
-    # ---- properties ----
-
-    @property
-    def name(self) -> str:
-        """ensembleJobs/ID: with it `client.job(name)` finds the job again, also from another
-        process."""
-        return str(self.message.name)
-
-    @property
-    def specification(self) -> Any:
-        """The question, as the message ballpiston.v1.EnsembleSpec; client.submit accepts it."""
-        return self.message.spec
-
-    @property
-    def experiment(self) -> str:
-        """Such as "first-hit"."""
-        return spelled(self.message.spec, "experiment")
+    name = shown(lambda job: str(job.name), "By it `client.job(name)` finds the job again.")
+    specification = shown(attrgetter("spec"), "The question, for client.submit.")
+    experiment = shown(lambda job: spelled(job.spec, "experiment"), 'Such as "first-hit".')
+    progress = shown(
+        lambda job: fraction_of(job.progress), "The share of the work that is done, 0 to 1."
+    )
+    error = shown(
+        lambda job: details_of(job.error).text(job.error.message),
+        "Why it failed; empty if it did not.",
+    )
+    pinned = shown(lambda job: bool(job.pinned), "Whether its results do not expire.")
+    labels: dict[str, str] = shown(
+        lambda job: dict(job.labels), "Short texts by which `client.jobs(labels=...)` finds it."
+    )
+    created = shown(lambda job: _time(job, "create_time"), "When the server accepted it, in UTC.")
+    started = shown(lambda job: _time(job, "start_time"), "When a worker began it, or None.")
+    ended = shown(lambda job: _time(job, "end_time"), "When it ended, or None.")
+    continues = shown(
+        lambda job: str(job.continues), "The name of the job whose points it continues, or empty."
+    )
 
     @property
     def state(self) -> str:
@@ -101,54 +105,6 @@ class Job:
     def has_ended(self) -> bool:
         """Whether it has succeeded, failed or been cancelled by now."""
         return self.state in ("succeeded", "failed", "cancelled")
-
-    @property
-    def progress(self) -> float:
-        """The share of the work that was done when the server was last asked, 0 to 1."""
-        return fraction_of(self.message.progress)
-
-    @property
-    def error(self) -> str:
-        """Why it failed; empty if it did not."""
-        error = self.message.error
-        return details_of(error).text(error.message) if self.message.HasField("error") else ""
-
-    @property
-    def answered_from_store(self) -> bool:
-        """Whether this job existed before it was submitted, and answered the same question."""
-        return self._is_from_store
-
-    @property
-    def pinned(self) -> bool:
-        """Whether its results do not expire."""
-        return bool(self.message.pinned)
-
-    @property
-    def labels(self) -> dict[str, str]:
-        """Short texts by which `client.jobs(labels=...)` finds it."""
-        return dict(self.message.labels)
-
-    @property
-    def created(self) -> datetime | None:
-        """When the server accepted it, in UTC."""
-        return self._time("create_time")
-
-    @property
-    def started(self) -> datetime | None:
-        """When a worker began it; None before that."""
-        return self._time("start_time")
-
-    @property
-    def ended(self) -> datetime | None:
-        """When it ended; None before that."""
-        return self._time("end_time")
-
-    @property
-    def continues(self) -> str:
-        """The name of the job whose points it continues, or empty."""
-        return str(self.message.continues)
-
-    # ---- actions ----
 
     def refresh(self) -> Job:
         """Asks the server for the job as it is now."""
@@ -174,9 +130,11 @@ class Job:
         """
         screen = progress_on_screen(progress)
         if self.answered_from_store and screen.is_visible:
-            screen.note(_from_store_text(self))
+            when = f", computed {self.ended:%Y-%m-%d %H:%M} UTC" if self.ended else ""
+            screen.note(f"answered from the store: {self.name}{when} (fresh=True computes anew)")
         try:
-            self._follow(screen)
+            with closing(screen):
+                self._end(watch_job(self._connection, self.name, screen))
         except KeyboardInterrupt:
             print(_farewell(self), file=sys.stderr)
             raise
@@ -196,39 +154,25 @@ class Job:
     ) -> Job:
         """Asks the same question with more samples or collisions, or a smaller tolerance. The new
         job continues this one if it has succeeded: it computes only the difference, and its result
-        has the bytes of one long run.
-
-        Example:
-            >>> more = client.job(name).extend(samples=1e7)
-            >>> more.continues, more.watch()
-
-        Raises:
-            TypeError: not exactly one of samples, collisions and tolerance is given.
-        """
+        has the bytes of one long run. Raises TypeError: not exactly one of samples, collisions and
+        tolerance is given."""
         if samples is collisions is tolerance is None:
             raise TypeError("extend needs a target: give samples, collisions or tolerance")
         spec = spec_pb2.EnsembleSpec()
         spec.CopyFrom(self.refresh().specification)
-        estimate = spec.target.estimate
-        spec.target.Clear()
-        spec.target.estimate = estimate
-        set_target(spec, samples, collisions, tolerance, None)
+        spec.target.CopyFrom(type(spec.target)(estimate=spec.target.estimate))
+        set_target(spec, samples=samples, collisions=collisions, tolerance=tolerance)
         request = ensemble_pb2.CreateEnsembleJobRequest(
-            spec=spec, request_id=str(uuid.uuid4()), labels=self.labels
+            spec=spec,
+            request_id=str(uuid.uuid4()),
+            labels=self.labels,
+            priority=self.message.priority,
         )
         return Job(self._connection, self._call(request))
 
     async def updates(self) -> AsyncIterator[Update]:
-        """What changes until the job has ended, for an event loop: the wait needs no thread.
-
-        Example:
-            >>> async for update in job.updates():
-            ...     print(update.state, update.progress)
-
-        Raises:
-            Unavailable: the server did not answer for two minutes. The job goes on.
-            ResourceExhausted: the server was busy for two minutes. The job goes on.
-        """
+        """What changes until the job has ended, for an event loop: the wait needs no thread. Raises
+        Unavailable, ResourceExhausted: as `watch`."""
         async for update in watch_updates(self._connection, self.name):
             if isinstance(update, Update):
                 yield update
@@ -236,32 +180,23 @@ class Job:
                 self._end(update)
 
     async def result_async(self) -> Result:
-        """`watch` for an event loop, without a bar.
-
-        Example:
-            >>> results = await asyncio.gather(*(job.result_async() for job in jobs))
-
-        Raises:
-            JobFailed, JobCancelled, Unavailable, ResourceExhausted: as `watch`.
-        """
+        """`watch` for an event loop, without a bar. Raises JobFailed, JobCancelled, Unavailable,
+        ResourceExhausted: as `watch`."""
         async for _ in self.updates():
             pass
         self._raise_unless_succeeded()
         return await asyncio.to_thread(self.result)
 
     def result(self) -> Result:
-        """The points that are finished now. It does not wait.
-
-        Raises:
-            ResultsExpired: the server keeps only the specification:
-                `client.run(job.specification)` computes the same results again.
-        """
+        """The points that are finished now. It does not wait. Raises ResultsExpired: the server
+        keeps only the specification: `client.run(job.specification)` computes the same results
+        again."""
         return self.result_in(ensemble_pb2.ListResultsRequest.FULL)
 
     def result_in(self, view: Any) -> Result:
         """`result` in a view of the protocol: BASIC has no histograms or curves."""
         self.refresh()
-        self.message.answered_from_store = self._is_from_store
+        self.message.answered_from_store = self.answered_from_store
         request = ensemble_pb2.ListResultsRequest(parent=self.name, page_size=_PAGE, view=view)
         points: list[Any] = []
         while True:
@@ -274,14 +209,10 @@ class Job:
                 return Result(self.message, points)
 
     def cancel(self) -> Job:
-        """Stops the job. Its finished points stay.
-
-        Raises:
-            FailedPrecondition: it has already ended (reason JOB_ALREADY_ENDED).
-        """
-        request = ensemble_pb2.CancelEnsembleJobRequest(
-            name=self.name, request_id=str(uuid.uuid4())
-        )
+        """Stops the job. Its finished points stay. Raises FailedPrecondition: it has already ended
+        (reason JOB_ALREADY_ENDED)."""
+        key = str(uuid.uuid4())
+        request = ensemble_pb2.CancelEnsembleJobRequest(name=self.name, request_id=key)
         self.message = self._call(request)
         return self
 
@@ -291,26 +222,17 @@ class Job:
 
     def label(self, **labels: str | None) -> Job:
         """Sets these labels and keeps the others; None removes a label. Of two changes at the same
-        time the later one may undo the other.
-
-        Example:
-            >>> job.label(run="7", who=None)
-        """
+        time the later one may undo the other."""
         kept = {k: v for k, v in (self.refresh().labels | labels).items() if v is not None}
         return self._update(labels=check_labels(kept))
 
     def delete(self) -> None:
         """Deletes the job with its results. It is not retried: if the answer was lost
-        (Unavailable), the job may have been deleted.
-
-        Raises:
-            FailedPrecondition: it has not ended (reason JOB_STILL_ACTIVE).
-        """
+        (Unavailable), the job may have been deleted. Raises FailedPrecondition: it has not ended
+        (reason JOB_STILL_ACTIVE)."""
         if self._connection.private is not None:
             self._connection.revive()
         self._connection.call_once(ensemble_pb2.DeleteEnsembleJobRequest(name=self.name))
-
-    # How it looks
 
     def __repr__(self) -> str:
         progress = self.message.progress
@@ -320,7 +242,9 @@ class Job:
         )
 
     def _repr_html_(self) -> str:
-        self._glance()
+        request = ensemble_pb2.GetEnsembleJobRequest(name=self.name)
+        with suppress(Error):  # if the server answers at once; a private one is not started for it
+            self.message = self._connection.call_once(request, _GLANCE_SECONDS)
         progress = self.message.progress
         facts = {
             "experiment": self.experiment,
@@ -331,14 +255,6 @@ class Job:
         }
         known = {name: fact for name, fact in facts.items() if fact}
         return html_table(f"job {self.name}", known, [known.values()])
-
-    def _glance(self) -> None:
-        """Updates the job if the server answers at once; a private server is not started for it."""
-        request = ensemble_pb2.GetEnsembleJobRequest(name=self.name)
-        try:
-            self.message = self._connection.call_once(request, _GLANCE_SECONDS)
-        except Error:
-            pass
 
     def _last_state(self) -> str:
         return spelled(self.message, "state")
@@ -351,18 +267,10 @@ class Job:
             raise
 
     def _update(self, **fields: Any) -> Job:
-        request = ensemble_pb2.UpdateEnsembleJobRequest(
-            job=ensemble_pb2.EnsembleJob(name=self.name, **fields),
-            update_mask={"paths": list(fields)},
-        )
+        job, mask = ensemble_pb2.EnsembleJob(name=self.name, **fields), {"paths": list(fields)}
+        request = ensemble_pb2.UpdateEnsembleJobRequest(job=job, update_mask=mask)
         self.message = self._call(request)
         return self
-
-    def _follow(self, screen: Progress) -> None:
-        try:
-            self._end(watch_job(self._connection, self.name, screen))
-        finally:
-            screen.close()
 
     def _end(self, job: Any) -> None:
         """Stores the job of a watch's last message. That message has no grid, so the known
@@ -381,9 +289,10 @@ class Job:
         error.job = self
         raise error
 
-    def _time(self, field: str) -> datetime | None:
-        time = value_of(self.message, field)
-        return None if time is None else time.ToDatetime(timezone.utc)
+
+def _time(job: Any, field: str) -> datetime | None:
+    time = value_of(job, field)
+    return None if time is None else cast(datetime, time.ToDatetime(timezone.utc))
 
 
 def _farewell(job: Job) -> str:
@@ -393,8 +302,3 @@ def _farewell(job: Job) -> str:
     server = "" if job._connection.private else f" --server {job._connection.address}"
     watch, cancel = (words.format(job.name, verb, server) for verb in ("watch", "cancel"))
     return f"The job goes on.\n  watch it again:  {watch}\n  cancel it:       {cancel}"
-
-
-def _from_store_text(job: Job) -> str:
-    when = f", computed {job.ended:%Y-%m-%d %H:%M} UTC" if job.ended else ""
-    return f"answered from the store: {job.name}{when} (fresh=True computes anew)"

@@ -10,24 +10,25 @@ A text gives the same doubles as the command line: inner numbers of from:to:coun
 digits, so that "0.01:0.49:49" has the doubles that are nearest to its decimal fractions. The
 numbers of np.linspace may differ from them in the last bit.
 
-Only the form is checked here. The server judges the values.
+A table of points has a row for each point and a column for each parameter. Only the form is checked
+here. The server judges the values.
 """
-
-from __future__ import annotations
 
 import math
 import numbers
 from collections.abc import Iterable, Mapping
-from typing import Union
+from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
 
+from ballpiston.fields import did_you_mean
+from ballpiston.point import PARAMETERS
+
 Numbers = Union[float, str, Iterable[float], "npt.NDArray[np.floating]"]
 Shapes = Union[int, str, Iterable[Union[int, str]]]
-
+Points = Any  # a pandas.DataFrame, a mapping of columns, or an iterable of mappings
 # Least and most of the protocol's integers.
-INT32 = (-(2**31), 2**31 - 1)
 INT64 = (-(2**63), 2**63 - 1)
 UINT64 = (0, 2**64 - 1)
 
@@ -36,12 +37,8 @@ _NUMBER_CHARACTERS = frozenset("0123456789+-.eE")
 
 
 def number_list(name: str, value: Numbers) -> list[float]:
-    """The numbers of one parameter, which `name` names in errors.
-
-    Raises:
-        TypeError: a value is not a number.
-        ValueError: a text does not have the form of a list.
-    """
+    """The numbers of one parameter, which `name` names in errors. Raises TypeError: a value is not
+    a number; ValueError: a text does not have the form of a list."""
     if isinstance(value, str):
         return _parsed_list(name, value)
     return [real_number(name, item) for item in _items(name, value)]
@@ -58,12 +55,9 @@ def shape_list(name: str, value: Shapes) -> list[str]:
 
 
 def whole_number(name: str, value: object, least: float = -math.inf, most: float = math.inf) -> int:
-    """10000, 1e4 or np.int64(10000), as an int.
-
-    Raises:
-        TypeError: not a number.
-        ValueError: a number that is not whole, or not from `least` to `most`.
-    """
+    """10000, 1e4 or np.int64(10000), as an int. Raises TypeError: not a number; ValueError: a
+    number that is not whole, or not from `least` to `most`."""
+    value = _scalar(value)
     if isinstance(value, numbers.Integral) and not isinstance(value, bool):
         number = int(value)
     elif (real := real_number(name, value)).is_integer():
@@ -76,16 +70,13 @@ def whole_number(name: str, value: object, least: float = -math.inf, most: float
 
 
 def real_number(name: str, value: object) -> float:
-    """A float.
-
-    Raises:
-        TypeError: not a number.
-        ValueError: an int beyond the range of double precision.
-    """
-    if isinstance(value, (bool, np.bool_)) or not _is_number(value):
+    """A float. Raises TypeError: not a number; ValueError: an int beyond the range of double
+    precision."""
+    value = _scalar(value)
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
         raise TypeError(f"{name} has to be a number, not {value!r}")
     try:
-        return float(value)  # type: ignore[arg-type]
+        return float(value)
     except OverflowError:
         raise ValueError(f"{name} exceeds the range of double precision") from None
 
@@ -98,13 +89,13 @@ def truth_value(name: str, value: object) -> bool:
     return bool(value)
 
 
-def _is_number(value: object) -> bool:
-    is_scalar_array = isinstance(value, np.ndarray) and value.ndim == 0
-    return isinstance(value, numbers.Real) or is_scalar_array
+def _scalar(value: object) -> object:
+    """The number in an array without dimensions; any other value as it is."""
+    return value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value
 
 
 def _items(name: str, value: object) -> list[object]:
-    if _is_number(value):
+    if isinstance(value := _scalar(value), numbers.Real):
         return [value]
     if isinstance(value, np.ndarray) and value.ndim != 1:
         raise ValueError(f"{name} has {value.ndim} dimensions; a list of parameters has one")
@@ -178,3 +169,45 @@ def _chain(name: str, value: object) -> str:
     if not math.isfinite(number) or abs(number - round(number)) > 1e-12 * abs(number):
         raise ValueError(f"{name} has to have whole numbers, not {value!r}")
     return str(round(number))
+
+
+def add_points(points: Points, grid: Any) -> None:
+    """Adds the columns to the lists of a Grid, and their names to its table. Raises TypeError: not
+    a table, or a column that is also given as a list; ValueError: an unknown column, a row that
+    lacks a column, or no row."""
+    columns = _columns(points)
+    if not columns or any(len(values) == 0 for values in columns.values()):
+        raise ValueError("points has no row")
+    for name, values in columns.items():
+        if name not in PARAMETERS:
+            hint = did_you_mean(str(name), PARAMETERS)
+            raise ValueError(f"points: {name!r} is not a parameter{hint}")
+        if len(getattr(grid, name)) > 0:
+            raise TypeError(f"points has the column {name}, and {name} is given: give one of them")
+        of_column = f"points, column {name}"
+        if name == "cells":
+            grid.cells.extend(shape_list(of_column, values))
+        else:
+            getattr(grid, name).extend(number_list(of_column, values))
+        grid.table.append(name)
+
+
+def _columns(points: Points) -> dict[str, list[Any]]:
+    if isinstance(points, Mapping) or hasattr(points, "columns"):
+        for name in points:
+            if not isinstance(points[name], Iterable):
+                raise TypeError(f"points, column {name} has to be a list, not {points[name]!r}")
+        return {name: list(points[name]) for name in points}
+    rows = list(points) if isinstance(points, Iterable) else [points]
+    if not all(isinstance(row, Mapping) for row in rows):
+        raise TypeError(
+            "points has to be a pandas.DataFrame, a dict of columns or a list of dicts, not "
+            + type(points).__name__
+        )
+    names = list(rows[0]) if rows else []
+    for number, row in enumerate(rows):
+        if set(row) != set(names):
+            raise ValueError(
+                f"points, row {number}: has the keys {', '.join(row)}; row 0 has {', '.join(names)}"
+            )
+    return {name: [row[name] for row in rows] for name in names}

@@ -1,15 +1,9 @@
 """What a question would cost with each model, and which model would answer."""
 
-from __future__ import annotations
+from typing import Any
 
-from typing import TYPE_CHECKING, Any
-
+from ballpiston.fields import frame_of, shown, spelled, value_of
 from ballpiston.result_table import html_table
-from ballpiston.fields import value_of
-from ballpiston.spelling import spelled
-
-if TYPE_CHECKING:
-    import pandas
 
 _MOST_ROWS = 25
 
@@ -22,51 +16,29 @@ class Plan:
             points it has as many, evenly spread.
     """
 
+    points = shown(lambda plan: int(plan.point_count), "Of the grid.")
+    work = shown(lambda plan: float(plan.work), "Seconds of processor time for the whole job.")
+    time = shown(lambda plan: float(plan.time), "Seconds by the clock, if nothing else ran.")
+    memory = shown(lambda plan: float(plan.memory), "Bytes of the largest point; an upper bound.")
+    models = shown(
+        lambda plan: [spelled(point, "model") for point in plan.points],
+        "The model that would answer, for each planned point.",
+    )
+    reasons = shown(
+        lambda plan: [str(point.reason) for point in plan.points],
+        "Why that model, for each planned point.",
+    )
+
     def __init__(self, message: Any) -> None:
         self.message = message
 
-    @property
-    def points(self) -> int:
-        """Of the grid."""
-        return int(self.message.point_count)
-
-    @property
-    def work(self) -> float:
-        """Seconds of processor time for the whole job."""
-        return float(self.message.work)
-
-    @property
-    def time(self) -> float:
-        """Seconds by the clock, if the server did nothing else."""
-        return float(self.message.time)
-
-    @property
-    def memory(self) -> float:
-        """Bytes that the point needs that needs most, with all workers; an upper bound."""
-        return float(self.message.memory)
-
-    @property
-    def models(self) -> list[str]:
-        """The model that would answer, for each planned point."""
-        return [spelled(point, "model") for point in self.message.points]
-
-    @property
-    def reasons(self) -> list[str]:
-        """Why that model, for each planned point."""
-        return [str(point.reason) for point in self.message.points]
-
-    def to_frame(self) -> pandas.DataFrame:
+    def to_frame(self) -> Any:
         """A pandas DataFrame, one row for each planned point and model, with samples, work (seconds
         of processor time) and relative errors; NaN where unknown. Needs pandas."""
-        import pandas
-
-        return pandas.DataFrame(self._rows())
+        return frame_of(self._rows())
 
     def __repr__(self) -> str:
-        lines = [
-            f" {mark:1} {model:<18} {work:>9}  {remark}"
-            for mark, model, work, remark in self._shown()
-        ]
+        lines = [" {:1} {:<18} {:>9}  {}".format(*row) for row in self._shown()]
         return "\n".join([self._heading(), *lines])
 
     def _repr_html_(self) -> str:
@@ -74,15 +46,11 @@ class Plan:
 
     def _shown(self) -> list[tuple[str, str, str, str]]:
         """The first rows: a mark of the chosen model, the model, its work and a remark."""
-        return [
-            (
-                ">" if row["chosen"] else "",
-                row["model"],
-                f"{row['work']:.2g} s" if "work" in row else "",
-                row["reason"],
-            )
-            for row in self._rows()[:_MOST_ROWS]
-        ]
+        shown = []
+        for row in self._rows()[:_MOST_ROWS]:
+            work = f"{row['work']:.2g} s" if "work" in row else ""
+            shown.append((">" if row["chosen"] else "", row["model"], work, row["reason"]))
+        return shown
 
     def _heading(self) -> str:
         models = ", ".join(dict.fromkeys(self.models))

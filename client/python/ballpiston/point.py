@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ballpiston.curve import Curve, choose_curve, curve_of
-from ballpiston.fields import value_of
+from ballpiston.fields import did_you_mean, shown, spelled, value_of
+from ballpiston.histogram import Curve, choose_curve, curve_of
 from ballpiston.histogram import Histogram, choose_histogram, histograms_of
-from ballpiston.number_text import measured_text
-from ballpiston.spelling import spelled
-from ballpiston.suggestion import did_you_mean
 
+_SMALLEST, _LARGEST = 1e-4, 1e7  # outside these a number has an exponent
+_ROUNDING = 5e-13  # an error below this share of the value is that of rounding
 # The parameters of a grid. The last one varies fastest.
 PARAMETERS = ("rho", "delta", "epsilon", "exponent", "cells", "temperature", "hot", "cold")
 
@@ -52,46 +52,28 @@ ESTIMATE_FIELDS = tuple(field.name for field in fields(Estimate))[2:]
 
 
 class Point:
-    """What was measured at one point.
+    """What was measured at one point, for instance result[0]["mean_hit_time"]."""
 
-    Example:
-        >>> point = result[0]
-        >>> point.parameters["delta"], point["mean_hit_time"]
-        (0.1, 57.66164520250258)
-    """
+    index = shown(lambda point: int(point.index), "Position in the grid, rho outermost.")
+    model = shown(lambda point: spelled(point, "model"), 'That answered, such as "billiard".')
+    reason = shown(lambda point: str(point.reason), "Why that model, if the server chose it.")
+    samples = shown(
+        lambda point: float(point.samples),
+        "First hits, orbits, replicas or collisions behind the estimates.",
+    )
+    remarks: list[str] = shown(
+        lambda point: list(point.remarks), "For instance that a run was too short."
+    )
+    histograms = shown(lambda point: histograms_of(point.histograms), "All of this point.")
+    curves = shown(lambda point: list(map(curve_of, point.curves)), "All of this point.")
 
     def __init__(self, message: Any) -> None:
         self.message = message  # ballpiston.v1.PointResult
 
     @property
-    def index(self) -> int:
-        """Position in the product of the grid's lists, rho outermost."""
-        return int(self.message.index)
-
-    @property
     def parameters(self) -> dict[str, float | str]:
         """The values of the parameters that the experiment uses, `cells` as text."""
         return parameters_of(self.message)
-
-    @property
-    def model(self) -> str:
-        """The model that answered, such as "billiard"."""
-        return spelled(self.message, "model")
-
-    @property
-    def reason(self) -> str:
-        """Why that model, if the server chose it."""
-        return str(self.message.reason)
-
-    @property
-    def samples(self) -> float:
-        """First hits, orbits, replicas or collisions behind the estimates."""
-        return float(self.message.samples)
-
-    @property
-    def remarks(self) -> list[str]:
-        """Sentences about the result, for instance that a run was too short."""
-        return list(self.message.remarks)
 
     @property
     def estimates(self) -> dict[str, Estimate]:
@@ -105,21 +87,11 @@ class Point:
         """The standard error of an estimate, or None."""
         return self._named(name).standard_error
 
-    @property
-    def histograms(self) -> list[Histogram]:
-        """All of this point."""
-        return histograms_of(self.message.histograms)
-
     def histogram(
         self, name: str, sigma: int | None = None, time: float | None = None
     ) -> Histogram:
         """One of them; see Result.histogram."""
         return choose_histogram(self.histograms, name, sigma, time)
-
-    @property
-    def curves(self) -> list[Curve]:
-        """All of this point."""
-        return [curve_of(message) for message in self.message.curves]
 
     def curve(self, name: str) -> Curve:
         """The curve of this name."""
@@ -153,3 +125,25 @@ def unknown_estimate(name: object, names: list[str]) -> str:
 def _estimate(message: Any) -> Estimate:
     facts = {field: value_of(message, field) for field in ESTIMATE_FIELDS}
     return Estimate(message.name, message.value, **facts)
+
+
+def measured_text(value: float, error: float | None = None) -> str:
+    """A value to the digits that its standard error supports: 21.63 ± 0.12. Without an error it has
+    six significant digits; with an error of 0, or of rounding only, twelve and no error."""
+    if error is None or math.isnan(error):
+        return f"{value:.6g}"
+    if 0 <= error < _ROUNDING * abs(value):
+        return f"{value:.12g}"
+    if not (error > 0 and math.isfinite(error) and math.isfinite(value)):
+        return f"{value:.6g} ± {error:.6g}"
+    last = math.floor(math.log10(error)) - 1  # power of ten of the error's second digit
+    size = max(abs(value), error)
+    if _SMALLEST <= size < _LARGEST:
+        decimals = max(0, -last)
+        return f"{value:.{decimals}f} ± {error:.{decimals}f}"
+    return f"{_scientific(value, last)} ± {_scientific(error, last)}"
+
+
+def _scientific(x: float, last: int) -> str:
+    digits = 0 if x == 0 else max(0, math.floor(math.log10(abs(x))) - last)
+    return f"{x:.{digits}e}"

@@ -3,8 +3,6 @@
 tqdm draws it if tqdm is installed. Where nobody looks, in a pipeline for instance, there is no bar.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 import sys
@@ -126,16 +124,13 @@ class JsonLines(Progress):
 
 def progress_on_screen(wanted: bool | str) -> Progress:
     """True or "auto": with a bar if somebody looks, in a terminal or in a notebook; "bar": with a
-    bar; "json": lines of JSON; False or "none": nothing.
-
-    Raises:
-        ValueError: another text.
-    """
+    bar; "json": lines of JSON; False or "none": nothing. Raises ValueError: another text."""
     if wanted not in (True, False, "auto", "bar", "json", "none"):
         raise ValueError(f"progress is {wanted!r}; permitted: auto, bar, json, none")
     if wanted == "json":
         return JsonLines()
-    is_seen = wanted in (True, "auto") and (_is_notebook() or _is_terminal())
+    is_terminal = sys.stderr is not None and sys.stderr.isatty()
+    is_seen = wanted in (True, "auto") and (is_terminal or _is_notebook())
     return Progress(_new_bar() if is_seen or wanted == "bar" else None)
 
 
@@ -150,10 +145,6 @@ def fraction_of(progress: Any) -> float:
     if progress.HasField("fraction"):
         return float(progress.fraction)
     return float(progress.points_done / progress.points) if progress.points else 0.0
-
-
-def _is_terminal() -> bool:
-    return sys.stderr is not None and sys.stderr.isatty()
 
 
 def _is_notebook() -> bool:

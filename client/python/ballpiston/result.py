@@ -2,41 +2,25 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
+from functools import cached_property
+from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Union, overload
-
-import numpy as np
+from typing import Any, overload
 
 from ballpiston.arrays import Arrays, arrays_of, by_name, only, parameter_arrays
-from ballpiston.curve import Curve
-from ballpiston.document import document_of, read_document, write_atomically
-from ballpiston.fields import FloatArray, column
-from ballpiston.histogram import Histogram
+from ballpiston.document import document_of, read_document, write_atomically, write_table
+from ballpiston.fields import FloatArray, column, frame_of, shown, spelled
+from ballpiston.histogram import Curve, Histogram
 from ballpiston.point import Point, unknown_estimate
 from ballpiston.result_table import result_html, result_text
-from ballpiston.spelling import spelled
-from ballpiston.table_file import write_table
-
-if TYPE_CHECKING:
-    import os
-
-    import pandas
 
 
 class Result:
     """The finished points of a job, in the order of the grid (rho outermost).
 
-    A name gives an array over the points, a number gives one point:
-
-        result["mean_hit_time"]             values
-        result.error("mean_hit_time")       standard errors, one sigma
-        result.exact("mean_hit_time")       closed forms
-        result.z_score("mean_hit_time")     (value - exact)/standard error
-        result.parameters["delta"]          the parameter at each point
-        result[3]                           a Point
-        len(result), result.names           points, names of the estimates
-
+    A name gives an array over the points, result["mean_hit_time"], and a number one Point.
     A value that does not exist at a point is NaN. Lengths are cells, masses are 1, the energy of a
     ball-piston pair is 1/2.
 
@@ -45,12 +29,33 @@ class Result:
         messages: one message ballpiston.v1.PointResult for each point.
     """
 
+    parameters = shown(
+        parameter_arrays,
+        "Arrays of rho, delta and of every other parameter that is used; `cells` as str.",
+        "messages",
+    )
+    samples = shown(
+        lambda points: column(points, "samples"),
+        "First hits, orbits, replicas or collisions at each point.",
+        "messages",
+    )
+    models = shown(
+        lambda points: [spelled(point, "model") for point in points],
+        'The model that answered at each point, such as "billiard".',
+        "messages",
+    )
+    remarks: list[list[str]] = shown(
+        lambda points: [list(point.remarks) for point in points],
+        "Sentences about each point, for instance that its run was too short.",
+        "messages",
+    )
+    job_name = shown(lambda job: str(job.name), "ensembleJobs/ID, for client.job.", "job")
+    state = shown(lambda job: spelled(job, "state"), "When the result was fetched.", "job")
+    specification = shown(attrgetter("spec"), "The question, for client.submit.", "job")
+
     def __init__(self, job: Any, messages: Sequence[Any]) -> None:
         self.job = job
         self.messages = list(messages)
-        self._estimates: dict[str, list[list[Any]]] | None = None
-
-    # Points
 
     def __len__(self) -> int:
         return len(self.messages)
@@ -67,12 +72,8 @@ class Result:
         ...
 
     def __getitem__(self, key: str | int) -> FloatArray | Point:
-        """The values of an estimate at all points, or one point.
-
-        Raises:
-            KeyError: no point has an estimate of this name.
-            IndexError: there are fewer points.
-        """
+        """The values of an estimate at all points, or one point. Raises KeyError: no point has an
+        estimate of this name; IndexError: there are fewer points."""
         if isinstance(key, str):
             return self._column(key, "value")
         if isinstance(key, slice):
@@ -82,12 +83,10 @@ class Result:
     def __contains__(self, name: object) -> bool:
         return name in self.names
 
-    # Columns
-
     @property
     def names(self) -> list[str]:
         """The names of the estimates that some point has."""
-        return list(self._by_name())
+        return list(self._by_name)
 
     def error(self, name: str) -> FloatArray:
         """Standard errors (one sigma) of an estimate; NaN where there are too few samples."""
@@ -114,73 +113,32 @@ class Result:
         """What the limit delta -> 0 gives at each point."""
         return self._column(name, "limit")
 
-    @property
-    def parameters(self) -> Arrays:
-        """Arrays of rho, delta and of every other parameter that is used; `cells` as str."""
-        return parameter_arrays(self.messages)
-
-    @property
-    def samples(self) -> FloatArray:
-        """First hits, orbits, replicas or collisions at each point."""
-        return column(self.messages, "samples")
-
-    @property
-    def models(self) -> list[str]:
-        """The model that answered at each point, such as "billiard"."""
-        return [point.model for point in self]
-
-    @property
-    def remarks(self) -> list[list[str]]:
-        """Sentences about each point, for instance that its run was too short."""
-        return [point.remarks for point in self]
-
-    # Histograms and curves
-
     def histogram(
         self, name: str, *, sigma: int | None = None, time: float | None = None, point: int = 0
     ) -> Histogram:
-        """A histogram of one point.
-
-        Args:
-            name: "alpha", "piston_energy", "ball_speed" or "piston_speed".
-            sigma: of an angle the sign of the piston's velocity, +1 or -1.
-            time: for "piston_energy", in cells over unit speed: the nearest one is taken.
-            point: position in this result.
-
-        Raises:
-            KeyError: the point has no such histogram, or several; the message lists them.
-        """
+        """A histogram of the point at this position, such as "alpha", an angle with the sign sigma
+        of the piston's velocity, or "piston_energy" at the nearest time, in cells over unit speed.
+        Raises KeyError: the point has no such histogram, or several; the message lists them."""
         return self[point].histogram(name, sigma, time)
 
     def curve(self, name: str, *, point: int = 0) -> Curve:
-        """A curve of one point, such as "survival" or "temperature_profile".
-
-        Raises:
-            KeyError: the point has no such curve; the message lists those that it has.
-        """
+        """A curve of one point, such as "survival" or "temperature_profile". Raises KeyError: the
+        point has no such curve; the message lists those that it has."""
         return self[point].curve(name)
-
-    # Other forms
 
     def arrays(self) -> Arrays:
         """Everything as a dict of arrays, as in an .npz file; arrays.py describes the layout."""
         return arrays_of(self.job, self.messages)
 
-    def to_frame(self) -> pandas.DataFrame:
+    def to_frame(self) -> Any:
         """A pandas DataFrame with one row for each point, and as columns the one-dimensional arrays
         of `arrays()`. Needs pandas."""
-        import pandas
+        return frame_of({name: a for name, a in self.arrays().items() if a.ndim == 1})
 
-        columns = {name: a for name, a in self.arrays().items() if a.ndim == 1}
-        return pandas.DataFrame(columns)
-
-    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a file: NAME.json, which ballpiston.load reads again, or NAME.npz, arrays for
-        numpy.load. An existing file is replaced.
-
-        Raises:
-            ValueError: the name ends with neither .json nor .npz.
-        """
+        numpy.load. An existing file is replaced. Raises ValueError: the name ends with neither
+        .json nor .npz."""
         path = Path(path)
         if path.suffix == ".json":
             write_atomically(path, document_of(self.job, self.messages).encode())
@@ -188,23 +146,6 @@ class Result:
             write_table(path, self.arrays())
         else:
             raise ValueError(f"{path}: the name of the file has to end with .json or .npz")
-
-    # The job
-
-    @property
-    def job_name(self) -> str:
-        """ensembleJobs/ID, for client.job."""
-        return str(self.job.name)
-
-    @property
-    def state(self) -> str:
-        """That of the job when the result was fetched, such as "succeeded"."""
-        return spelled(self.job, "state")
-
-    @property
-    def specification(self) -> Any:
-        """The question, for client.submit."""
-        return self.job.spec
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Result):
@@ -221,34 +162,24 @@ class Result:
 
     def _heading(self) -> str:
         return (
-            f"{spelled(self.job.spec, 'experiment')}, {len(self)} of {self.job.progress.points} points, "
-            f"seed {self.job.spec.seed}, engine {self.job.engine_version} "
+            f"{spelled(self.job.spec, 'experiment')}, {len(self)} of {self.job.progress.points} "
+            f"points, seed {self.job.spec.seed}, engine {self.job.engine_version} "
             f"({self.job_name}, {self.state})"
         )
 
+    @cached_property
     def _by_name(self) -> dict[str, list[list[Any]]]:
-        if self._estimates is None:
-            self._estimates = by_name(self.messages, "estimates")
-        return self._estimates
+        return by_name(self.messages, "estimates")
 
     def _column(self, name: str, field: str) -> FloatArray:
         """A field of an estimate at each point."""
-        if name not in self._by_name():
+        if name not in self._by_name:
             raise KeyError(unknown_estimate(name, self.names))
-        return column(map(only, self._by_name()[name]), field)
+        return column(map(only, self._by_name[name]), field)
 
 
-def load(path: Union[str, "os.PathLike[str]"]) -> Result:
+def load(path: str | os.PathLike[str]) -> Result:
     """A result from a JSON file that `result.save` or `ballpiston result JOB --format json` wrote.
-    Needs no server.
-
-    Raises:
-        ValueError: the file is not a saved result, for instance one with arrays (.npz), which
-            numpy.load reads.
-        OSError: the file cannot be read.
-
-    Example:
-        >>> result = ballpiston.load("sweep.json")
-        >>> result["mean_free_time_conditional"]
-    """
+    Needs no server. Raises ValueError: the file is not a saved result, for instance one with arrays
+    (.npz), which numpy.load reads; OSError: the file cannot be read."""
     return Result(*read_document(Path(path)))

@@ -1,14 +1,11 @@
 """Tables for terminals and notebooks: a result with one row for each point, and rows of any kind as
 HTML."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
 
-from ballpiston.number_text import measured_text
-from ballpiston.point import Point
+from ballpiston.point import Point, measured_text
 
 _MOST_ROWS = 20
 
@@ -42,10 +39,7 @@ def html_table(heading: str, titles: Iterable[str], rows: Sequence[Iterable[str]
 
 def _row(message: Any) -> dict[str, str]:
     point = Point(message)
-    row = {
-        name: value if isinstance(value, str) else f"{value:.6g}"
-        for name, value in point.parameters.items()
-    }
+    row = {k: v if isinstance(v, str) else f"{v:.6g}" for k, v in point.parameters.items()}
     row["model"] = point.model
     row["samples"] = f"{point.samples:.15g}"
     for estimate in point.estimates.values():

@@ -9,29 +9,19 @@ file of the command line, ~/.config/ballpiston/config.toml.
                   BALLPISTON_TOKEN
 """
 
-from __future__ import annotations
-
 import os
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ballpiston.channel_security import ChannelSecurity
+from ballpiston.channel import ChannelSecurity
 from ballpiston.server_address import is_socket
 
+_KEYS = {"address": "server", "ca": "ca", "tls": "tls", "token_file": "token-file"}
 _VARIABLES = {
-    "address": "BALLPISTON_SERVER",
-    "ca": "BALLPISTON_CA",
-    "tls": "BALLPISTON_TLS",
-    "token_file": "BALLPISTON_TOKEN_FILE",
-    "token": "BALLPISTON_TOKEN",
-}
-_KEYS = {
-    "address": "server",
-    "ca": "ca",
-    "tls": "tls",
-    "token_file": "token-file",
+    name: "BALLPISTON_" + key.upper().replace("-", "_")
+    for name, key in (_KEYS | {"token": "token"}).items()
 }
 _TRUE = ("1", "true", "yes", "on", "enable")
 _FALSE = ("", "0", "false", "no", "off", "disable")
@@ -39,11 +29,8 @@ _FALSE = ("", "0", "false", "no", "off", "disable")
 
 def address_and_security(given: Mapping[str, Any]) -> tuple[str, ChannelSecurity]:
     """From the arguments of `connect` that are not None. The address is empty for the private
-    server. Over a Unix socket, the private server's too, only arguments count.
-
-    Raises:
-        ValueError: the private server with TLS or a token, or a config file that is not TOML.
-    """
+    server. Over a Unix socket, the private server's too, only arguments count. Raises ValueError:
+    the private server with TLS or a token, or a config file that is not TOML."""
     settings: dict[str, Any] = {}
     for stronger in (_config_file(), _environment(), given):
         if "token" in stronger or "token_file" in stronger:

@@ -12,20 +12,10 @@ from typing import Any, TypeVar
 
 from google.protobuf import json_format
 
-from ballpiston.parameter_lists import (
-    INT64,
-    UINT64,
-    Numbers,
-    Shapes,
-    number_list,
-    real_number,
-    shape_list,
-    truth_value,
-    whole_number,
-)
-from ballpiston.points_table import Points, add_points
-from ballpiston.spelling import from_spelling
-from ballpiston.suggestion import did_you_mean
+from ballpiston.fields import did_you_mean, from_spelling
+from ballpiston.parameter_lists import INT64, UINT64, Numbers, Points, Shapes, add_points
+from ballpiston.parameter_lists import number_list, real_number, shape_list, truth_value
+from ballpiston.parameter_lists import whole_number
 from ballpiston.v1 import spec_pb2
 
 
@@ -58,7 +48,8 @@ def specification(
     most 100,000 points.
 
     Args:
-        experiment: its name, such as "first-hit"; the error of a wrong name lists all names.
+        experiment: "equilibrium", "conditional-mean-free-time", "first-hit", "energy-relaxation",
+            "markov-property", "lyapunov", "gas-equilibrium", "gas-conduction" or "gas-lyapunov".
         rho: radius of the discs; 1/2 < rho < 1/sqrt(2).
         delta: how far the piston reaches into the cell; 0 < delta <= (1 - sqrt(4 rho^2 - 1))/2.
         epsilon: energy of the piston; 0 to 1/2.
@@ -107,7 +98,8 @@ def specification(
         spec.grid.cells.extend(shape_list("cells", cells))
     if points is not None:
         add_points(points, spec.grid)
-    set_target(spec, samples, collisions, tolerance, budget)
+    targets = {"samples": samples, "collisions": collisions}
+    set_target(spec, **targets, tolerance=tolerance, budget=budget)
     if estimate is not None:
         if not isinstance(estimate, str):
             raise TypeError(f"estimate has to be a str, not {estimate!r}")
@@ -123,12 +115,8 @@ def specification(
 def question_of(experiment: object, question: Mapping[str, Any], others: Iterable[str] = ()) -> Any:
     """The message for the arguments of submit, run, plan and sample. In place of an experiment's
     name they take a message, such as job.specification, or its JSON as a dict. `others` are further
-    keywords of the method, for suggestions.
-
-    Raises:
-        TypeError: a keyword that does not exist; the message suggests the nearest one.
-        ValueError: a dict that is not a specification.
-    """
+    keywords of the method, for suggestions. Raises TypeError: a keyword that does not exist; the
+    message suggests the nearest one; ValueError: a dict that is not a specification."""
     if isinstance(experiment, str):
         for name in question:
             if name not in _KEYWORDS:
@@ -136,11 +124,8 @@ def question_of(experiment: object, question: Mapping[str, Any], others: Iterabl
                 raise TypeError(f"there is no keyword {name!r}{hint}")
         return specification(experiment, **question)
     if question:
-        raise TypeError(
-            "a specification holds the whole question: give no "
-            + ", ".join(question)
-            + " beside it, or change a copy of the specification"
-        )
+        given = ", ".join(question)
+        raise TypeError(f"a specification is a whole question: give no {given}, or change a copy")
     if isinstance(experiment, spec_pb2.EnsembleSpec):
         return experiment
     if isinstance(experiment, Mapping):
@@ -148,10 +133,8 @@ def question_of(experiment: object, question: Mapping[str, Any], others: Iterabl
             return json_format.ParseDict(dict(experiment), spec_pb2.EnsembleSpec())
         except json_format.ParseError as error:
             raise ValueError(f"not a specification: {error}") from error
-    raise TypeError(
-        "the first argument has to be the name of an experiment or a specification, not "
-        + type(experiment).__name__
-    )
+    kind = type(experiment).__name__
+    raise TypeError(f"the first argument has to be an experiment or a specification, not {kind}")
 
 
 Method = TypeVar("Method", bound=Callable[..., Any])
@@ -180,35 +163,22 @@ def _keywords_of(function: Callable[..., Any]) -> dict[str, inspect.Parameter]:
 _KEYWORDS = _keywords_of(specification)
 
 
-def set_target(
-    spec: Any,
-    samples: float | None,
-    collisions: float | None,
-    tolerance: float | None,
-    budget: float | None,
-) -> None:
-    """Sets the target of an EnsembleSpec.
-
-    Raises:
-        TypeError: targets that exclude each other.
-        ValueError: a number that cannot be sent.
-    """
-    values = {"samples": samples, "collisions": collisions}
-    values |= {"tolerance": tolerance, "budget": budget}
-    given = [name for name, value in values.items() if value is not None]
-    if len(given) > 1 and given != ["tolerance", "budget"]:
+def set_target(spec: Any, **values: float | None) -> None:
+    """Sets the target of an EnsembleSpec: samples, collisions, tolerance, budget; None: not given.
+    Raises TypeError: targets that exclude each other; ValueError: a number that cannot be sent."""
+    given = {name: value for name, value in values.items() if value is not None}
+    if len(given) > 1 and list(given) != ["tolerance", "budget"]:
         raise TypeError(
             f"{' and '.join(given)} exclude each other: give at most one of samples, collisions, "
             "tolerance, budget; only tolerance and budget may stand together"
         )
-    if samples is not None:
-        spec.target.samples = whole_number("samples", samples, *INT64)
-    if collisions is not None:
-        spec.target.collisions = whole_number("collisions", collisions, *INT64)
-    if tolerance is not None:
-        spec.target.tolerance = real_number("tolerance", tolerance)
-    if budget is not None:
-        spec.target.budget.FromNanoseconds(_nanoseconds(real_number("budget", budget)))
+    for name, value in given.items():
+        if name == "budget":
+            spec.target.budget.FromNanoseconds(_nanoseconds(real_number(name, value)))
+        elif name == "tolerance":
+            spec.target.tolerance = real_number(name, value)
+        else:
+            setattr(spec.target, name, whole_number(name, value, *INT64))
 
 
 def _nanoseconds(budget: float) -> int:

@@ -1,4 +1,5 @@
-"""Following a job to its end, through restarts of the server and cut connections.
+"""Following a job to its end, through restarts of the server and cut connections, in a thread that
+waits or in an event loop.
 
 If the stream breaks, the watch attaches again with the last resume token that it saw, after pauses
 that double from 0.1 s to 5 s, or as long as the server's error says, until nothing was heard for
@@ -7,31 +8,32 @@ stops, by RESOURCE_EXHAUSTED with a reason, as from a server that is busy, and b
 terminal state. Every other error ends the watch.
 """
 
-from __future__ import annotations
-
+import asyncio
 import random
 import time
+from collections.abc import AsyncIterator
+from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
 import grpc
+import grpc.aio
 
+from ballpiston.channel import open_channel
 from ballpiston.connection import Connection
 from ballpiston.errors import Error, Unavailable
-from ballpiston.progress import Progress
-from ballpiston.v1 import ensemble_pb2
+from ballpiston.fields import spelled
+from ballpiston.point import Point
+from ballpiston.progress import Progress, fraction_of, progress_in
+from ballpiston.v1 import ensemble_pb2, ensemble_pb2_grpc
 
 _LONGEST_CONNECTING = 1.0  # seconds
-
-_ENDED = (
-    ensemble_pb2.EnsembleJob.SUCCEEDED,
-    ensemble_pb2.EnsembleJob.FAILED,
-    ensemble_pb2.EnsembleJob.CANCELLED,
-)
+_JOB = ensemble_pb2.EnsembleJob
 
 
 def has_ended(state: int) -> bool:
     """SUCCEEDED, FAILED or CANCELLED."""
-    return state in _ENDED
+    return state in (_JOB.SUCCEEDED, _JOB.FAILED, _JOB.CANCELLED)
 
 
 class ReattachPace:
@@ -61,12 +63,8 @@ class ReattachPace:
 def watch_job(
     connection: Connection, name: str, screen: Progress, pace: ReattachPace | None = None
 ) -> Any:
-    """Blocks until the job has ended and returns it, as an EnsembleJob.
-
-    Raises:
-        Unavailable, ResourceExhausted: the watch gave up.
-        Error: any other error of the server.
-    """
+    """Blocks until the job has ended and returns it, as an EnsembleJob. Raises Unavailable,
+    ResourceExhausted: the watch gave up; Error: any other error of the server."""
     watch = Attachments(name, pace)
     while True:
         why = _read_stream(connection, watch, screen)
@@ -75,16 +73,14 @@ def watch_job(
         pause = watch.pause_after(why)
         screen.show_pause(why.code == "RESOURCE_EXHAUSTED", pause)
         time.sleep(pause)
-        connect_again(connection)
+        _connect_again(connection)
 
 
-def connect_again(connection: Connection) -> None:
+def _connect_again(connection: Connection) -> None:
     """Waits up to a second for the connection. If there is none, the next stream reports the
     error."""
-    try:
+    with suppress(Unavailable):
         connection.revive(_LONGEST_CONNECTING)
-    except Unavailable:
-        pass
 
 
 class Attachments:
@@ -109,13 +105,9 @@ class Attachments:
             self.ended = message.job
 
     def pause_after(self, why: Error) -> float:
-        """Seconds until the next stream, after one that `why` ended.
-
-        Raises:
-            Error: `why`, if it does not say that the stream broke, or if it is time to give up and
-                the server is busy.
-            Unavailable: it is time to give up, and no server answers.
-        """
+        """Seconds until the next stream, after one that `why` ended. Raises Error: `why`, if it
+        does not say that the stream broke, or if it is time to give up and the server is busy;
+        Unavailable: it is time to give up, and no server answers."""
         if not _is_broken_stream(why):
             raise why
         pause = self._pace.next_pause(time.monotonic(), why.retry_delay)
@@ -129,25 +121,65 @@ class Attachments:
         return pause
 
 
-def ended_early() -> Error:
+def _ended_early() -> Error:
     """Why a stream ended that had no error and no ended job."""
     return Unavailable("the server ended the watch before the end of the job", code="UNAVAILABLE")
 
 
 def _read_stream(connection: Connection, watch: Attachments, screen: Progress) -> Error:
     """One stream to its end, and why it ended."""
-    stream = connection.open_stream(watch.request)
     try:
-        for message in stream:
+        for message in connection.stream(watch.request):
             watch.handle(message)
             screen.show(message)
-    except grpc.RpcError as error:
-        return connection.error_of(error)
-    finally:
-        stream.cancel()
-    return ended_early()
+    except Error as error:
+        return error
+    return _ended_early()
 
 
 def _is_broken_stream(why: Error) -> bool:
     end = (why.code, bool(why.reason))
     return why.code == "UNAVAILABLE" or end in {("CANCELLED", False), ("RESOURCE_EXHAUSTED", True)}
+
+
+@dataclass(frozen=True)
+class Update:
+    """One message of a watch.
+
+    Attributes:
+        state: of the job, such as "running".
+        progress: the share of the work that is done, 0 to 1.
+        points: those that changed, finished or not.
+    """
+
+    state: str
+    progress: float
+    points: list[Point]
+
+
+async def watch_updates(connection: Connection, name: str) -> AsyncIterator[Update | Any]:
+    """`watch_job` over gRPC's asyncio channel, without a thread: updates until the job has ended,
+    then the job itself."""
+    watch = Attachments(name)
+    state = "queued"
+    while True:
+        why = _ended_early()
+        async with open_channel(connection.address, connection.security, grpc.aio) as channel:
+            stub = ensemble_pb2_grpc.EnsembleServiceStub(channel)
+            try:
+                async for message in stub.WatchEnsembleJob(
+                    watch.request, metadata=connection.metadata()
+                ):
+                    watch.handle(message)
+                    if message.HasField("job"):
+                        state = spelled(message.job, "state")
+                    if (progress := progress_in(message)) is not None:
+                        changed = (*message.snapshot.points, *message.snapshot.finished_points)
+                        yield Update(state, fraction_of(progress), [Point(m) for m in changed])
+            except grpc.RpcError as error:
+                why = connection.error_of(error)
+        if watch.ended is not None:
+            yield watch.ended
+            return
+        await asyncio.sleep(watch.pause_after(why))
+        await asyncio.to_thread(_connect_again, connection)

@@ -8,17 +8,16 @@ import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from conftest import LIMIT, Home, wait_until
 
 import ballpiston
 from ballpiston._google_rpc import error_details_pb2, status_pb2
-from ballpiston.channel_security import ChannelSecurity, Token, check
-from ballpiston.connection_hint import connection_hint
+from ballpiston.channel import ChannelSecurity, Token, check, connection_hint
 from ballpiston.error_details import details_of, error_of
-from ballpiston.private_server import find_private_server
-from ballpiston.server_address import grpc_target, literal_address
+from ballpiston.server_address import find_private_server, grpc_target, literal_address
 from ballpiston.settings import address_and_security
 
 
@@ -182,10 +181,18 @@ def test_no_program_and_no_server_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("BALLPISTON_PROGRAM")
-    monkeypatch.setattr("ballpiston.private_server._program_beside_package", lambda: None)
+    monkeypatch.setattr("ballpiston.server_address._program_beside_package", lambda: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(ballpiston.NoPrivateServer, match="install the package ballpiston"):
         find_private_server()
+
+
+@pytest.mark.parametrize("timeout", [0, -3, float("nan"), "3"])
+def test_a_time_limit_is_above_0(timeout: Any) -> None:
+    with pytest.raises((TypeError, ValueError), match="^timeout "):
+        ballpiston.connect(timeout=timeout)
+    with ballpiston.connect(timeout=float("inf")) as client:
+        assert client.jobs(limit=1) is not None
 
 
 def test_a_server_that_does_not_answer_is_named(tmp_path: Path) -> None:

@@ -15,7 +15,8 @@ import pytest
 from conftest import ENDLESS, FIRST_HITS, Home
 
 import ballpiston
-from ballpiston.v1 import ensemble_pb2
+from ballpiston.collisions import _records_of
+from ballpiston.v1 import ensemble_pb2, trace_pb2
 
 TABLE = {"rho": [0.53, 0.6, 0.55], "delta": [0.1, 0.05, 0.2]}
 OF_THE_TABLE = {"epsilon": 0.125, "exponent": 1, "samples": 100}
@@ -81,6 +82,12 @@ def test_a_labelled_job_is_found_relabelled_and_selected(home: Home) -> None:
     assert sorted(deleted.split("\n")) == ["", *sorted(f"{j.name} deleted" for j in (job, other))]
 
 
+def test_a_list_has_all_jobs(client: ballpiston.Client) -> None:
+    for _ in range(51):
+        client.submit(**FIRST_HITS, fresh=True, labels={"run": "many"})
+    assert len(client.jobs(labels={"run": "many"})) == 51
+
+
 def test_cancel_by_label_asks_and_takes_no_for_an_answer(home: Home) -> None:
     with ballpiston.connect() as client:
         job = client.submit(**ENDLESS, labels={"run": "endless"})
@@ -94,13 +101,13 @@ def test_cancel_by_label_asks_and_takes_no_for_an_answer(home: Home) -> None:
 
 def test_an_extended_job_has_the_bytes_of_one_long_run(client: ballpiston.Client) -> None:
     question: dict[str, Any] = dict(rho=0.53, delta=[0.1, 0.2], epsilon=0.125, exponent=1, seed=104)
-    job = client.submit("first-hit", **question, samples=3_000)
+    job = client.submit("first-hit", **question, samples=3_000, priority=-1)
     job.watch(progress=False)
     with pytest.raises(TypeError, match="give samples, collisions or tolerance"):
         job.extend()
     for samples in (20_000, 50_000):
         longer = job.extend(samples=samples)
-        assert longer.continues == job.name
+        assert longer.continues == job.name and longer.message.priority == -1
         extended = longer.watch(progress=False)
         job = longer
     at_once = client.run("first-hit", **question, samples=50_000, fresh=True, progress=False)
@@ -154,6 +161,16 @@ def test_a_table_of_estimates_needs_jobs(first_hits: ballpiston.Result) -> None:
         ballpiston.estimates_table([first_hits])  # type: ignore[list-item]
 
 
+def test_the_state_in_a_table_is_that_of_its_points(
+    client: ballpiston.Client, first_hits: ballpiston.Result, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = client.job(first_hits.job_name)
+    partial = ensemble_pb2.EnsembleJob(state=ensemble_pb2.EnsembleJob.RUNNING)
+    earlier = ballpiston.Result(partial, first_hits.messages)
+    monkeypatch.setattr(job, "result_in", lambda view: earlier)
+    assert set(ballpiston.estimates_table([job])["state"]) == {"running"}
+
+
 def test_the_estimates_of_a_running_job_have_a_note(
     client: ballpiston.Client, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -199,7 +216,10 @@ def test_the_collisions_of_a_job_are_read_as_records(home: Home, tmp_path: Path)
         question: dict[str, Any] = dict(rho=0.53, delta=0.2, epsilon=0.125, exponent=1)
         records = client.sample("first-hit", **question, samples=5_000, verify=True).all()
         result = client.run("first-hit", **question, samples=5_000, progress=False)
-        assert sum(len(part) for part in client.sample("first-hit", **question, samples=5_000)) == 5_000
+        parts = client.sample("first-hit", **question, samples=5_000)
+        assert sum(map(len, parts)) == 5_000
+        parts.close()
+        assert list(parts) == []
     assert records["sample"].tolist() == list(range(5_000))
     assert records["time"].mean() == pytest.approx(result["mean_hit_time"][0], rel=1e-12)
     np.testing.assert_allclose(records["ball_vx_after"], records["piston_vx"], atol=1e-14)
@@ -212,6 +232,10 @@ def test_the_collisions_of_a_job_are_read_as_records(home: Home, tmp_path: Path)
     for name in records.dtype.names:
         np.testing.assert_array_equal(arrays[name], records[name])
         np.testing.assert_array_equal(read[name], records[name])
+
+
+def test_a_column_that_the_server_does_not_send_is_nan() -> None:
+    assert np.isnan(_records_of(trace_pb2.SampleCollisionsResponse(sample=[0, 1]))["time"]).all()
 
 
 def test_collisions_become_a_file_of_columns(

@@ -51,6 +51,7 @@ def test_shapes_are_numbers_or_texts() -> None:
         ("0:1:3:log", ValueError),
         (["0.1"], TypeError),
         ([True], TypeError),
+        (np.array(True), TypeError),
         (object(), TypeError),
         ({0.1: 1}, TypeError),
         (np.zeros((2, 2)), ValueError),
@@ -84,7 +85,8 @@ def test_a_switch_is_true_or_false(client: ballpiston.Client) -> None:
 
 
 def test_a_seed_has_64_bits() -> None:
-    assert ballpiston.specification("first-hit", seed=2**64 - 1).seed == 2**64 - 1
+    for seed in (2**64 - 1, np.array(2**64 - 1)):
+        assert ballpiston.specification("first-hit", seed=seed).seed == 2**64 - 1
     with pytest.raises(ValueError, match="seed"):
         ballpiston.specification("first-hit", seed=-1)
 
@@ -94,7 +96,7 @@ def test_numbers_that_cannot_be_sent_are_named(client: ballpiston.Client) -> Non
         client.trace(rho=0.5296, delta=0.1, events=1, seed=-1)
     with pytest.raises(ValueError, match="^events has to be from"):
         client.trace(rho=0.5296, delta=0.1, events=1e20)
-    with pytest.raises(ValueError, match="^priority has to be from"):
+    with pytest.raises(ValueError, match="^priority has to be from -100 to 100"):
         client.submit("first-hit", priority=10**12)
     with pytest.raises(TypeError, match="^estimate has to be a str, not 5"):
         ballpiston.specification("lyapunov", estimate=5)  # type: ignore[arg-type]

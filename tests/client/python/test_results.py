@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import ballpiston
-from ballpiston.number_text import measured_text
+from ballpiston.point import measured_text
 
 
 def test_a_name_gives_an_array_over_the_points(first_hits: ballpiston.Result) -> None:

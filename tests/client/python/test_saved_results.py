@@ -75,8 +75,8 @@ def test_a_full_disk_is_an_error_that_names_the_file(
     program = (
         "import resource, sys, numpy\n"
         "from pathlib import Path\n"
-        "from ballpiston.program import run_program\n"
-        "from ballpiston.table_file import write_table\n"
+        "from ballpiston.command import run_program\n"
+        "from ballpiston.document import write_table\n"
         "table = {'n': numpy.random.default_rng(1).random(1000)}\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))\n"
         "sys.exit(run_program(lambda words: write_table(Path(words[0]), table), sys.argv[1:]))"
@@ -91,7 +91,7 @@ def test_a_full_disk_is_an_error_that_names_the_file(
 def test_sigterm_interrupts_a_program_without_a_traceback(home: Home) -> None:
     program = (
         "import signal, sys\n"
-        "from ballpiston.program import run_program\n"
+        "from ballpiston.command import run_program\n"
         "sys.exit(run_program(lambda _: signal.raise_signal(signal.SIGTERM) or [], []))"
     )
     interrupted = home.python(program)

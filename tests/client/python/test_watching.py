@@ -66,6 +66,39 @@ def test_ctrl_c_ends_the_watch_and_leaves_the_job(
     wait_until(lambda: streams(client) == 0)
 
 
+def test_the_main_thread_leaves_locks_to_others(
+    client: ballpiston.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C would keep a lock of gRPC locked, and every later call of the client would hang."""
+    users = []
+    release = threading.Condition.__exit__
+
+    def noted(lock: threading.Condition, *error: Any) -> None:
+        if sys._getframe(1).f_code.co_name != "__del__":  # that of a call has nobody to wait for it
+            users.append(threading.get_ident())
+        release(lock, *error)
+
+    monkeypatch.setattr(threading.Condition, "__exit__", noted)
+    client.run(**FIRST_HITS, fresh=True, progress=False)
+    next(client.trace(rho=0.5296, delta=0.1, events=1e4))
+    monkeypatch.undo()
+    assert users and threading.get_ident() not in users
+
+
+def test_ctrl_c_in_a_trace_leaves_a_client_that_works(home: Home) -> None:
+    program = (
+        "import ballpiston, os, signal, threading\n"
+        "client = ballpiston.connect()\n"
+        "for wait in range(1, 10):\n"
+        "    threading.Timer(0.03 * wait, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
+        "    try:\n"
+        "        list(client.trace(rho=0.5296, delta=0.1, events=1e6))\n"
+        "    except KeyboardInterrupt:\n"
+        "        print(len(client.jobs(limit=0)), client.status().state)\n"
+    )
+    assert home.python(program).communicate(timeout=LIMIT) == (9 * "0 serving\n", "")
+
+
 def test_a_thread_watches_after_the_end_of_the_main_thread(home: Home) -> None:
     program = (
         "import ballpiston, threading\n"
@@ -202,17 +235,12 @@ class ScriptedServer:
         self.streams = list(streams)
         self.tokens: list[str] = []
 
-    def open_stream(self, request: Any) -> Any:
+    def stream(self, request: Any) -> Any:
         self.tokens.append(request.resume_token)
-        return ScriptedStream(self.streams.pop(0) if self.streams else [])
+        return self.streams.pop(0) if self.streams else []
 
     def revive(self, wait: float) -> None:
         raise Unavailable("cannot be started")
-
-
-class ScriptedStream(list[Any]):
-    def cancel(self) -> None:
-        pass
 
 
 def update(token: str, state: int) -> Any:

@@ -7,10 +7,11 @@
     data["relaxation-energy"]["value"]     # tables: named columns, NumPy arrays
     relaxation.draw(data)                  # a matplotlib figure
 
-The module NAME of `ballpiston figure NAME` has:
+The module of a figure has the name in `ballpiston figure NAME` with underscores. It has:
 
 - a first line that `ballpiston figure --list` prints
-- measure(client, *, ...): asks the server and computes; returns the tables by name of file. The
+- measure(client, *, ...): asks the server and computes; returns the tables by name of file. Those
+  of stability and speed_accuracy run programs and take no client. The
   keywords are the flags of `ballpiston figure`, with their defaults without --quick and --full.
 - EFFORT, if the figure takes samples: the values of keywords that --quick and --full replace
 - draw(tables): the picture

@@ -17,14 +17,13 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 import ballpiston
-from ballpiston.document import write_atomically
+from ballpiston.document import write_atomically, write_table
 from ballpiston.figures import names
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.tables import Tables
 from ballpiston.parameter_lists import INT64, UINT64, number_list, whole_number
-from ballpiston.program import run_program
-from ballpiston.suggestion import did_you_mean
-from ballpiston.table_file import write_table
+from ballpiston.command import run_program
+from ballpiston.fields import did_you_mean
 
 # What --help says about the keywords of `measure`.
 _VARIABLES = {

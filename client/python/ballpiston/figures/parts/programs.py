@@ -13,7 +13,7 @@ import numpy as np
 
 from ballpiston.errors import Error, InvalidArgument
 from ballpiston.figures.parts.tables import Table
-from ballpiston.private_server import find_private_server
+from ballpiston.server_address import find_private_server
 
 
 class ProgramFailed(Error):
@@ -46,7 +46,7 @@ def output_of(program: str, *arguments: str, quiet: bool = False) -> str:
 
 def table_of(program: str, command: str, **flags: Any) -> Table:
     """The table that a command of the program prints as CSV; all its columns are numbers."""
-    texts = [text for name, value in flags.items() for text in (f"--{name}", f"{value!r}")]
+    texts = [text for name, value in flags.items() for text in (f"--{name}", str(value))]
     lines = output_of(program, command, *texts).splitlines()
     columns: Any = np.genfromtxt(lines, delimiter=",", names=True, ndmin=1)
     return {name: columns[name] for name in columns.dtype.names or ()}
