@@ -153,6 +153,17 @@ TEST(Ladder, TheLimitsRowsHaveTheirBoundAsTheModelError) {
   }
 }
 
+// What rings of jump processes conduct more than the infinite chain
+// (docs/research/conductivity.md).
+TEST(Ladder, TheSpectrumsConductivityHasTheErrorOfSmallRings) {
+  for (const auto& [cells, difference] : {std::pair("3", 1.56e-4), {"5", 3.2e-5}, {"6", 1.6e-5}}) {
+    EXPECT_GT(BoundOf(Asked(absl::StrCat(
+                  "gas-equilibrium rho=0.53 delta=1e-5 estimate=conductivity cells=", cells))),
+              difference)
+        << cells;
+  }
+}
+
 TEST(Ladder, ThePlanRefersToTheNamedEstimate) {
   const EnsembleSpec spec =
       Asked("gas-equilibrium delta=0.01 tolerance=0.05 estimate=conductivity");
