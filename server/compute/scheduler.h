@@ -120,6 +120,8 @@ class Scheduler {
   std::optional<Lease> NextOf(Run& run, const Capacity& capacity,
                               const std::optional<PilotPlace>& pilot = {})
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::optional<Lease> FirstOfARun(const std::string& principal, const Capacity& capacity) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> NextOfAwaitedPilot(const Run& run, const Capacity& capacity)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // StopRun also stops the run. Both return leases whose work is to be destroyed without the
