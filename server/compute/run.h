@@ -89,6 +89,12 @@ class Run {
   // a local executor opens points.
   bool IsWantedElsewhere() const;
 
+  // Whether such executors found nothing, and may find something when the first point is open.
+  bool IsAwaitedElsewhere() const {
+    return hungry_elsewhere_ && !began_ && !stopped_ && !spec_->target.budget_seconds &&
+           !NeedsNoSamples(*spec_);
+  }
+
   // Bytes that a lease of a local executor needs and that were not there when NextLease gave it
   // none. 0: the run waits for no memory.
   double awaited_memory() const { return awaited_memory_; }
