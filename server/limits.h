@@ -21,7 +21,7 @@ struct Limits {
   int64_t max_memory_mib = 0;
   // Stored results.
   double retain_days = 0;       // from the end of a job until its results expire
-  int64_t max_store_bytes = 0;  // above it results expire (book/retention.cc)
+  int64_t max_store_bytes = 0;  // above 95 % of it results expire (book/retention.cc)
 };
 
 inline int64_t MostStreams(const Limits& limits) {

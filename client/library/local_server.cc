@@ -48,7 +48,10 @@ std::string HomeFolder() {
 absl::Status CheckPrivate(const std::string& folder, mode_t for_others) {
   struct stat status;
   if (lstat(folder.c_str(), &status) != 0) return absl::ErrnoToStatus(errno, folder);
-  const bool is_own = S_ISDIR(status.st_mode) && status.st_uid == geteuid();
+  if (!S_ISDIR(status.st_mode)) {
+    return absl::PermissionDeniedError("not a folder, as the private server needs: " + folder);
+  }
+  const bool is_own = status.st_uid == geteuid();
   if (is_own && (status.st_mode & for_others) == 0) return absl::OkStatus();
   return absl::PermissionDeniedError(absl::StrFormat(
       "the private server's folder %s belongs to user %d and has mode %04o, but must be private: "

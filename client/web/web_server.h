@@ -5,13 +5,15 @@
 //   POST /ballpiston.v1.SERVICE/METHOD     a call, with the token
 //
 // Other programs on this machine, and web pages of other sites in the user's browser, can reach the
-// same port. Three headers of a request are checked before its body is read:
+// same port. Headers of a request are checked before its body is read:
 //
 //   Host           must be this page's address. This rejects a foreign name that resolves to this
 //                  machine (DNS rebinding).
 //   Origin         must be this page's, if the browser sends it
 //   Authorization  must be Bearer TOKEN in every call to the server. The page's files contain no
 //                  secrets and need no token.
+//   Content-Length must be there in every call, without Content-Encoding and Transfer-Encoding, so
+//                  that the size of the body is known
 //
 // Each connection uses one of kMostConnections threads. A stream beyond kMostStreams is refused, so
 // that threads are left for other calls. If a stream's reader disconnects, the call ends at the

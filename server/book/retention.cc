@@ -3,8 +3,8 @@
 // The results of a job that is not pinned expire `retain_days` after its end. If the store takes
 // more than kFullShare of its bound, results expire earlier: those of the principal with the most
 // stored bytes, beginning with the job that ended first. If none of its results can expire, its
-// expired jobs are deleted in the same order; then the next principal follows. So no principal can
-// displace the results of another one that stores less.
+// expired jobs are deleted in the same order; then the next principal follows. So the
+// results of the principal that stores most expire first.
 // The data of active and pinned jobs are never removed here, so the store may grow beyond the
 // bound; if they alone exceed it, no new job is accepted (acceptance.h).
 #include <cstdint>

@@ -188,7 +188,7 @@ void FolderExecutor::NoteTaken(const LeaseFileName& file) {
   taken_ += laid.worker.empty();
   has_workers_ = true;
   laid.worker = file.worker;
-  laid.alive = laid.looked = SteadyNow();
+  laid.alive = laid.looked = claimed_ = SteadyNow();
   MutexLock lock(mutex_);
   ++status_.claims;
 }
@@ -299,11 +299,11 @@ void FolderExecutor::LookAt(Leases::iterator laid) {
 // A worker that takes the lease at this moment finds at its first touch that it has lost it.
 void FolderExecutor::LookAtWaiting(Leases::iterator laid) {
   const Clock::time_point now = SteadyNow();
-  const double patience =
-      has_workers_ ? laid->second.pace.timeout : SecondsOf(kLooksForAWorker * options_.look);
+  const double timeout = laid->second.pace.timeout;
+  const double patience = has_workers_ ? timeout : SecondsOf(kLooksForAWorker * options_.look);
   if (SecondsBetween(laid->second.alive, now) < patience) return;
-  has_workers_ = false;
-  next_laying_ = std::max(next_laying_, now + kLooksForThreads * options_.look);
+  has_workers_ = taken_ > 0 || SecondsBetween(claimed_, now) < timeout;
+  if (!has_workers_) next_laying_ = std::max(next_laying_, now + kLooksForThreads * options_.look);
   files_->Remove(LeaseFileName{laid->first}.Todo()).IgnoreError();
   GiveBack(laid, false);
 }

@@ -7,9 +7,9 @@
 //   - A file in todo/ that this process did not lay is removed at the first look.
 //   - A lease in done/ ends. Its chunks are reported and on disk before its file is removed.
 //   - A lease in taken/ of which the server knows nothing is moved to done/, so its worker stops.
-//   - A lease that nobody takes goes back to the scheduler after the time-out. Two looks later, when
-//     this server's threads had their choice, one lease is laid, to find out whether there is a
-//     worker, and goes back after ten looks. When a worker has taken one, others are laid again.
+//   - A lease that nobody takes goes back to the scheduler after the time-out. If no worker takes
+//     any, only one lease is laid, two looks later, so that this server's threads can take its
+//     chunks first. It goes back after ten looks. When a worker takes one, others are laid again.
 //   - A lease is lost if its file does not change, or is not there, for the time-out. The server
 //     compares times of the folder only with each other, and measures the time-out with its own
 //     steady clock. So a clock that jumps loses no lease.
@@ -143,7 +143,8 @@ class FolderExecutor {
   // Used only by the thread that looks.
   Leases leases_;
   size_t taken_ = 0;                // of these
-  bool has_workers_ = true;         // false: nobody took a lease within the time-out
+  Clock::time_point claimed_ = {};  // when a worker took the last one
+  bool has_workers_ = true;         // false: none is taken, and none was within the time-out
   std::set<std::string> reported_;  // leases whose files in done/ are reported, but not removed yet
   uint64_t laid_ = 0;
   std::optional<Clock::time_point> prepared_;

@@ -249,11 +249,14 @@ absl::Status SlurmWorkers::Steer(const FolderStatus& work) {
   const auto leases = static_cast<size_t>(work.waiting_leases + work.taken_leases);
   const size_t wanted = std::min(leases, options_.workers);
   may_have_workers_ = found > 0;
-  const absl::Status judged = Judge(work, *queue, wanted);
-  if (!judged.ok()) return judged;
-  const bool has_ended = wanted == 0 && work.problem.empty();
-  const bool had_ended = std::exchange(work_has_ended_, has_ended);
-  if (has_ended && had_ended && found > 0) {
+  // For a moment the folder may be empty although there is work.
+  const bool is_empty = wanted == 0 && work.problem.empty();
+  const bool has_ended = std::exchange(was_empty_, is_empty) && is_empty;
+  if (wanted > 0 || has_ended || !queue->never.empty()) {
+    const absl::Status judged = Judge(work, *queue, wanted);
+    if (!judged.ok()) return judged;
+  }
+  if (has_ended && found > 0) {
     trial_.reset();
     return tools_->Cancel(true);
   }

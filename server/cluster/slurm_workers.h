@@ -19,7 +19,7 @@
 //   are tried | the submission of this one                                 | none
 //
 // `step_` is --slurm-workers at first. A failure makes it 1, a refusal by Slurm half of the number
-// that was refused, and each submission that Slurm accepts doubles it.
+// that was missing, and each submission that Slurm accepts doubles it.
 #pragma once
 
 #include <chrono>
@@ -125,7 +125,7 @@ class SlurmWorkers {
   // Used only by the thread that looks.
   size_t array_size_;
   bool may_have_workers_ = true;  // of an earlier process
-  bool work_has_ended_ = false;   // there was no lease at the last query
+  bool was_empty_ = false;        // there was no lease at the last query
   absl::Status fault_;            // why the workers fail; OK: they work
   // Workers were submitted when so many leases had been taken, and none was taken since.
   std::optional<double> trial_;

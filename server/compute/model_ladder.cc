@@ -7,7 +7,6 @@
 #include "core/markov/relaxation_spectrum.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/point_result.h"
-#include "server/convert/spec.h"
 #include "server/processor_time.h"
 #include "server/store/point_tables.h"
 

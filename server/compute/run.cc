@@ -108,11 +108,11 @@ bool Run::IsLarge() const {
 }
 
 bool Run::IsWantedElsewhere() const {
-  return hungry_elsewhere_ && HasPointsToOpen() && IsLarge() && MorePoints() > 0;
+  return hungry_elsewhere_ && HasPointsToOpen() && IsLarge() && PointsToOpenAhead() > 0;
 }
 
 // That may wait for executors elsewhere, beside those that are open. Requires IsLarge().
-size_t Run::MorePoints() const {
+size_t Run::PointsToOpenAhead() const {
   const double one =
       std::max(sampled_memory_ / sampled_points_ - kMemoryOfAThread, kMemoryOfAnOpenPoint);
   const double most = std::min(kMostOpenPoints, options_.memory_limit / one);
@@ -122,7 +122,7 @@ size_t Run::MorePoints() const {
 
 std::optional<Lease> Run::NextOpening() {
   const size_t most = NeedsNoSamples(*spec_) ? kCheapPoints
-                      : IsWantedElsewhere()  ? std::min(kPointsForElsewhere, MorePoints())
+                      : IsWantedElsewhere()  ? std::min(kPointsForElsewhere, PointsToOpenAhead())
                                              : 1;
   Lease lease;
   while (lease.opens.size() < most && !suspected_.empty()) {

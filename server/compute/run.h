@@ -89,12 +89,6 @@ class Run {
   // a local executor opens points.
   bool IsWantedElsewhere() const;
 
-  // Whether such executors found nothing, and may find something when the first point is open.
-  bool IsAwaitedElsewhere() const {
-    return hungry_elsewhere_ && !began_ && !stopped_ && !spec_->target.budget_seconds &&
-           !NeedsNoSamples(*spec_);
-  }
-
   // Bytes that a lease of a local executor needs and that were not there when NextLease gave it
   // none. 0: the run waits for no memory.
   double awaited_memory() const { return awaited_memory_; }
@@ -135,7 +129,8 @@ class Run {
   // The point is finished, or has a chunk more that this process has computed. It is not being
   // opened any more.
   void NoteProgress(size_t point);
-  // Whether the suspicion is to be cleared: the run has progressed, and none of its points is left.
+  // Whether the suspicion is to be cleared: the run has progressed, and no point of the suspicion
+  // is left.
   bool IsRefuted() const;
   void EndSuspicion() { request_.suspicion.reset(); }
 
@@ -163,7 +158,7 @@ class Run {
   bool HasPointsToOpen() const { return !suspected_.empty() || next_point_ < taken_.size(); }
   // The rest of the run takes long enough for executors that are not local.
   bool IsLarge() const;
-  size_t MorePoints() const;
+  size_t PointsToOpenAhead() const;
   void SkipTakenPoints();
   Lease Completed(Lease lease) const;
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/model_choice/ladder.h"
 #include "server/compute/crash_record.h"
 #include "server/compute/guarded.h"
 #include "server/convert/errors.h"
@@ -158,25 +157,12 @@ std::optional<Lease> Scheduler::Choose(const Capacity& capacity) {
     mutex_.AssertHeld();
     Run& run = *runs_.at(candidate);
     if (!MayTakeTurn(run, capacity.local)) return false;
-    if (capacity.local) lease = FirstOfARun(run.request().principal, capacity);
-    if (lease) return true;
     lease = NextOf(run, capacity.local ? WithBounds(capacity, run) : capacity);
     if (capacity.local) held_.NoteAwaited(run.key(), lease ? 0 : run.awaited_memory());
     return lease.has_value();
   });
   const bool none_waits_now = one_waited && !held_.OneWaits();  // the others have memory again
   return lease || !none_waits_now ? lease : Choose(capacity);
-}
-
-// A run that may have work for executors elsewhere opens its first point, whatever its priority:
-// the runs of a higher one may need the threads for days, and not those executors.
-std::optional<Lease> Scheduler::FirstOfARun(const std::string& principal,
-                                            const Capacity& capacity) const {
-  for (const auto& [key, run] : runs_) {
-    const bool awaits = run->IsAwaitedElsewhere() && run->request().principal == principal;
-    if (awaits && MayTakeTurn(*run, true)) return run->NextLease(WithBounds(capacity, *run));
-  }
-  return std::nullopt;
 }
 
 Capacity Scheduler::WithBounds(const Capacity& capacity, const Run& run) const {

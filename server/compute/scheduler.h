@@ -117,8 +117,6 @@ class Scheduler {
   std::optional<Lease> Choose(const Capacity& capacity) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::optional<Lease> NextOf(Run& run, const Capacity& capacity)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::optional<Lease> FirstOfARun(const std::string& principal, const Capacity& capacity) const
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // StopRun also stops the run. Both return leases whose work is to be destroyed without the
   // lock: their stop was requested, and no local turn at them is in progress.
   std::vector<Lease> DropStoppedLeases(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);

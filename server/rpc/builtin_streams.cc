@@ -4,6 +4,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "grpc/grpc.h"
 #include "grpcpp/server_context.h"
@@ -39,7 +40,11 @@ class CountedStream : public grpc::experimental::Interceptor {
 
  private:
   absl::Status Check() const {
-    if (!is_within_limit_) return absl::ResourceExhaustedError("too many streams; retry later");
+    if (!is_within_limit_) {
+      return absl::ResourceExhaustedError(absl::StrCat(
+          "all clients together have the most streams of this service that are permitted, ",
+          authenticator_ ? kReflectionStreams : kHealthWatches, "; retry later"));
+    }
     return authenticator_ ? authenticator_->Authenticate(context_).status() : absl::OkStatus();
   }
 

@@ -15,7 +15,8 @@ namespace ballpiston::server {
 inline constexpr int kReflectionStreams = 32;
 inline constexpr int kHealthWatches = 1'000;
 
-// Ends other streams with UNAUTHENTICATED or RESOURCE_EXHAUSTED.
+// Ends a stream beyond the limit with RESOURCE_EXHAUSTED, and reflection without a valid token with
+// UNAUTHENTICATED.
 class BuiltinStreams : public grpc::experimental::ServerInterceptorFactoryInterface {
  public:
   // `authenticator` must outlive the server.

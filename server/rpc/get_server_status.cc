@@ -4,7 +4,6 @@
 
 #include "absl/time/clock.h"
 #include "core/engine_version.h"
-#include "server/convert/spec.h"
 #include "server/convert/timestamp.h"
 #include "server/rpc/methods.h"
 #include "server/rpc/server_status.h"

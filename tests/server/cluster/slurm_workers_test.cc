@@ -168,10 +168,12 @@ TEST_F(SlurmWorkersTest, WorkersThatFailAreTriedOneByOne) {
     const char* problem;
     std::vector<size_t> submitted;
     int waiting_cancelled;
+    double leases = 5;
   };
   const SlurmQueue never = {.waiting = 1, .running = 2, .never = "PartitionTimeLimit"};
   const Row rows[] = {{{}, 0, "", {5}, 0},
                       {{}, 0, "without taking a lease", {}, 0},
+                      {{}, 0, "without taking a lease", {}, 0, 0},  // none for a moment
                       {{}, 0, "without taking a lease", {1}, 0},
                       {{.running = 1}, 0, "without taking a lease", {}, 0},
                       {{}, 0, "without taking a lease", {}, 0},
@@ -186,11 +188,10 @@ TEST_F(SlurmWorkersTest, WorkersThatFailAreTriedOneByOne) {
                       {never, 4, "for ever: PartitionTimeLimit", {}, 1},
                       {{.running = 5}, 4, "", {}, 0}};
   SlurmWorkers workers = New();
-  work_ = {.waiting_leases = 5};
   for (const Row& row : rows) {
     SCOPED_TRACE(&row - rows);
     slurm_ = {.queue = row.queue};
-    work_.claims = row.claims;
+    work_ = {.waiting_leases = row.leases, .claims = row.claims};
     workers.Look();
     EXPECT_THAT(workers.Status().problem, HasSubstr(row.problem));
     EXPECT_EQ(workers.Status().problem == "", row.problem == absl::string_view());

@@ -337,15 +337,6 @@ TEST_F(ElsewhereTest, PointsAreOpenedAheadForAHungryExecutorElsewhere) {
   EXPECT_EQ(remote.TakeAll().size(), 32u);
 }
 
-TEST_F(ElsewhereTest, ARunOfLowPriorityOpensItsFirstPointForElsewhere) {
-  Begin(WithTarget(10, {.budget_seconds = 1e6}));
-  scheduler_.SetPriority(1, 5);
-  Add(2, SixChunks());
-  EXPECT_FALSE(remote_.Take());
-  EXPECT_THAT(Turns(3, 1), ElementsAre(2, 1, 1));
-  EXPECT_TRUE(remote_.Take());
-}
-
 TEST_F(ElsewhereTest, WorkElsewhereIsChargedToItsRun) {
   const auto journal = Begin(SixChunks());
   const auto lease = remote_.Take();
