@@ -1,6 +1,7 @@
 // Limits on the streams and on the other calls of a principal.
 #include "server/rpc/quota.h"
 
+#include "server/rpc/reflection_check.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
@@ -58,6 +59,30 @@ TEST(UnreadAnswers, CountAsCallsInProgress) {
   unread.clear();
   // Then the server sees the ends of the calls.
   AwaitThat([&] { return evaluate() != "TOO_MANY_CALLS"; });
+}
+
+// ---- reflection_check.h ----
+
+size_t ThreadsOfThisProcess() {
+  const std::filesystem::directory_iterator all("/proc/self/task");
+  return static_cast<size_t>(std::distance(begin(all), end(all)));
+}
+
+TEST(ReflectionCheck, StreamsUseLimitedThreadsAndOtherCallsGoOn) {
+  RunningServer server;
+  ASSERT_OK(CallByName(server.channel(), kReflection, kListServices));
+  const size_t before = ThreadsOfThisProcess();
+  std::vector<std::unique_ptr<NamedCall>> streams;
+  for (int i = 0; i < 2 * kReflectionStreams; ++i) {
+    streams.push_back(std::make_unique<NamedCall>(server.channel(), kReflection));
+  }
+  // The server rejects the last stream. Without the limit it would stay open.
+  EXPECT_THAT(streams.back()->Finish(), StatusIs(grpc::StatusCode::RESOURCE_EXHAUSTED));
+  EXPECT_LT(ThreadsOfThisProcess(), before + 50);  // the client's own may be among them
+  EXPECT_OK(CallByName(server.channel(), kListJobs));
+  EXPECT_OK(CallByName(server.channel(), kCheckHealth));
+  streams.clear();
+  AwaitThat([&server] { return CallByName(server.channel(), kReflection, kListServices).ok(); });
 }
 
 }  // namespace
