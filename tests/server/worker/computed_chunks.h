@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/ensemble/point_fold.h"
-#include "server/compute/lease.h"
+#include "server/worker/lease_file.h"
 
 namespace ballpiston::server {
 
