@@ -7,8 +7,7 @@
 // logarithms. Properties, each with a test of its name:
 //   1. NoiseFloorIsTheMeanUnderTheExactLaw, to 1e-3 of itself at every N.
 //   2. ErrorsAreTheScatterOfRepetitions, for equal and for unequal laws.
-//   3. ErrorsHoldForPeakedLaws, of RelativeEntropy.
-//   4. ErrorsHoldForCorrelatedSamples, of DivergenceWithinRows.
+//   3. ErrorsHoldForCorrelatedSamples, of DivergenceWithinRows.
 //
 // An error is the scatter of D at this N. The mean of D at this N is above its limit of many
 // samples; the difference is the noise floor only if the laws are nearly equal.

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string_view>
 #include <vector>
 
+#include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 
@@ -19,6 +21,16 @@ inline PointSummary RunPoint(const EnsembleSpec& spec, size_t index = 0) {
 // The summary of measured samples by the spec's experiment.
 inline PointSummary Summarized(const EnsembleSpec& spec, const BlockResult& merged) {
   return PointExperiment::Create(spec, 0)->Summarize(merged);
+}
+
+// The relative error that the plan states for this number of samples, over the measured error of
+// the first estimate.
+inline double StatedOverMeasured(const EnsembleSpec& spec) {
+  const PointSummary summary = RunPoint(spec);
+  const Estimate& first = summary.estimates.front();
+  const double stated =
+      ScatterOf(spec, PointAt(spec, 0)).error / std::sqrt(static_cast<double>(summary.samples));
+  return stated * std::fabs(first.value) / first.standard_error.value();
 }
 
 inline const Estimate& Named(std::string_view name, const std::vector<Estimate>& estimates) {

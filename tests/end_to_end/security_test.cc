@@ -119,23 +119,6 @@ TEST_F(Security, WithoutDescriptorsTheLogSaysThatNobodyCanConnect) {
   EXPECT_TRUE(server_->AwaitLog("the server accepts no more connections; raise its limit"));
 }
 
-TEST_F(Security, UnsafeFlagsExitWithTwoAndOneLine) {
-  NewToken("alice", "read");
-  const auto expect = [&](const Words& flags, const std::string& text) {
-    const ProcessResult result =
-        RunServer(home_, Joined({flags, {"--data_dir", home_.File("data")}}));
-    EXPECT_THAT(result, ExitsWith(2));
-    EXPECT_THAT(result.err, HasSubstr(text));
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-  };
-  expect({"--listen", "0.0.0.0:0"}, "give --tls-certificate, --tls-key and --access-file");
-  expect(Joined({TlsFlags(), {"--listen", "unix:" + home_.File("s")}}),
-         "can open its Unix socket; it cannot be combined with --access-file");
-  expect({"--new-token", "alice:read"}, "--new-token requires --access-file");
-  chmod(home_.File("server.key").c_str(), 0644);
-  expect(Joined({TlsFlags(), {"--listen", "127.0.0.1:0"}}), "is open to other users");
-}
-
 // The server reads the access file again at SIGHUP.
 TEST_F(Security, NoTokenIsInTheLogTheStoreOrTheOutputOfAClient) {
   const std::string tokens[] = {NewToken("alice", "submit"), NewToken("gone", "submit"),

@@ -127,22 +127,8 @@ TEST_F(ServerTest, AServerInAFolderIsStartedCheckedCopiedAndStopped) {
   EXPECT_TRUE(fs::exists(home_.File("copy")));
   EXPECT_THAT(Server("backup", backup), Not(ExitsWith(0)));  // the file exists
   EXPECT_THAT(Server("stop", named_), ExitsWith(0));
-}
-
-// After a server has stopped or was killed, a new server starts at another address.
-TEST_F(ServerTest, StartPrintsTheAddressOfTheServerThatItStarted) {
-  for (int i = 0; i < 6; ++i) {
-    const std::string address = absl::StrCat("unix:", home_.File("socket"), i);
-    EXPECT_EQ(Server("start", Joined({named_, {"--listen", address}})).out, address + "\n");
-    if (i % 2 == 0) {
-      EXPECT_THAT(Server("stop", named_), ExitsWith(0));
-      EXPECT_EQ(Contents(home_.File("data/lock")), "");
-      EXPECT_FALSE(fs::exists(home_.File("data/server.address")));
-    } else {
-      KillServers();
-      AwaitThat([&] { return Servers().empty(); });
-    }
-  }
+  EXPECT_EQ(Contents(home_.File("data/lock")), "");
+  EXPECT_FALSE(fs::exists(home_.File("data/server.address")));
 }
 
 // The lock file of a folder that another machine uses holds the number of a process of that

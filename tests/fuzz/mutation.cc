@@ -131,13 +131,6 @@ void MutateList(Dice& dice, const FieldDescriptor& field, Message& message) {
 
 }  // namespace
 
-uint64_t Dice::Bits() {
-  uint64_t x = state_ += 0x9e3779b97f4a7c15;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return x ^ (x >> 31);
-}
-
 void MutateBytes(Dice& dice, std::string& bytes) {
   const size_t at = dice.Below(bytes.size() + 1);
   const auto random = static_cast<char>(dice.Bits());

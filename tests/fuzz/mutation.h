@@ -2,22 +2,10 @@
 #pragma once
 
 #include "google/protobuf/message.h"
+#include "tests/support/dice.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::fuzz {
-
-// SplitMix64: the same numbers everywhere.
-class Dice {
- public:
-  explicit Dice(uint64_t seed) : state_(seed) {}
-
-  uint64_t Bits();
-  size_t Below(size_t end) { return static_cast<size_t>(Bits() % end); }  // end > 0
-  bool OneIn(size_t n) { return Below(n) == 0; }
-
- private:
-  uint64_t state_;
-};
 
 // One flip, insertion, deletion, repetition or number of interest.
 void MutateBytes(Dice& dice, std::string& bytes);

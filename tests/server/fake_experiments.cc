@@ -1,16 +1,14 @@
 #include "tests/server/fake_experiments.h"
 
 #include "tests/server/preamble.h"
+#include "tests/support/dice.h"
 
 namespace ballpiston::server {
 namespace {
 
-// SplitMix64 of the three numbers.
+// From the three numbers.
 double Uniform(uint64_t seed, uint64_t point, uint64_t sample) {
-  uint64_t x = seed * 0x9e3779b97f4a7c15 + point * 0xbf58476d1ce4e5b9 + sample;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1p-53;
+  return Dice(seed * 0x9e3779b97f4a7c15 + point * 0xbf58476d1ce4e5b9 + sample).Uniform();
 }
 
 // Blocks of kFakeSamplesPerBlock, in chunks of 64 samples, 128, 256 ...

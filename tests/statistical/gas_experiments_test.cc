@@ -24,15 +24,6 @@ GasGeometry GeometryAt(const EnsembleSpec& spec) {
   return GasGeometryOf(PointAt(spec, 0), GasEnds::kPeriodic);
 }
 
-// The relative error that the plan states for this number of samples, over the measured error.
-double StatedOverMeasured(const EnsembleSpec& spec) {
-  const PointSummary summary = RunPoint(spec);
-  const Estimate& first = summary.estimates.front();
-  const double stated =
-      ScatterOf(spec, PointAt(spec, 0)).error / std::sqrt(static_cast<double>(summary.samples));
-  return stated * std::fabs(first.value) / *first.standard_error;
-}
-
 struct StatedError {
   const char* question;
   int64_t samples, of_a_night;

@@ -532,24 +532,6 @@ describe('Keyboard, colours and width', () => {
     await page.getByLabel('Theme').selectOption('dark');
     await page.locator('html[data-theme=dark]').waitFor();
   });
-
-  it('all views fit the width of a phone', async () => {
-    await newPage({viewport: PHONE});
-    await open();
-    await jobLink(firstHit).waitFor();
-    await assertFitsTheWidth('jobs');
-    for (const job of [firstHit, gas]) {
-      await open(job);
-      await page
-        .getByText(/Ingoing angle|Speed of the balls/)
-        .first()
-        .waitFor();
-      await assertFitsTheWidth(job);
-    }
-    await open('orbit');
-    await page.getByRole('img', {name: 'Cell with one ball'}).waitFor();
-    await assertFitsTheWidth('orbit');
-  });
 });
 
 describe('Accessibility rules', () => {
@@ -558,22 +540,27 @@ describe('Accessibility rules', () => {
     dark: {colorScheme: 'dark'},
     phone: {viewport: PHONE},
   })) {
-    it(`have no violations, ${name}`, async () => {
+    it(`have no violations, ${name}; all views fit a phone`, async () => {
+      const fits = options.viewport ? assertFitsTheWidth : () => {};
       await newPage(options);
       await open();
       await jobLink(firstHit).waitFor();
+      await fits('jobs');
       await assertNoViolations('jobs');
       await open(firstHit);
       await page.getByText('Ingoing angle α, σ = −1').waitFor();
+      await fits('first hit');
       await page.getByText('Specification, times and work').click();
       await page.getByText('As JSON').click();
       await page.getByText('Numbers').first().click();
       await assertNoViolations('first hit');
       await open(gas);
       await page.getByText('Speed of the balls').waitFor();
+      await fits('gas');
       await assertNoViolations('gas');
       await open('orbit');
       await page.getByRole('img', {name: 'Cell with one ball'}).waitFor();
+      await fits('orbit');
       await assertNoViolations('orbit');
       await page.goto(web.address.replace(/token=.*/, 'token=0123'));
       await banner().filter({hasText: 'wrong token'}).waitFor();

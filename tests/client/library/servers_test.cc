@@ -70,7 +70,7 @@ TEST_F(ChildProcessTest, AMissingProgramIsNotFound) {
 // process id into the lock file and writes its address. It ends at SIGTERM, or when the test's
 // folder is removed, or with the test. FindServer holds a free lock for a moment, so the script
 // waits for the lock.
-constexpr char kLock[] = "exec 9>>$2/lock; flock -w 1 9 || exit 1; echo $$ >$2/lock\n";
+constexpr char kLock[] = "exec 9>>$2/lock; flock 9; echo $$ >$2/lock\n";
 constexpr char kListen[] = "echo unix:$2/socket >$2/server.address\n";
 constexpr char kWait[] = "while [ -d $2 ] && kill -0 $PPID; do sleep 0.01 9>&-; done\n";
 
@@ -133,8 +133,7 @@ TEST_F(ServerProcessTest, AServerThatDoesNotListenIsFoundAndReported) {
 
 // An earlier server, which was killed, left its address. The new server removes it late.
 TEST_F(ServerProcessTest, TheAddressIsThatOfTheNewServer) {
-  constexpr char kLateLock[] =
-      "exec 9>>$2/lock; flock -w 1 9 || exit 1; sleep 0.1; rm $2/server.address\n";
+  constexpr char kLateLock[] = "exec 9>>$2/lock; flock 9; sleep 0.1; rm $2/server.address\n";
   WriteFile(data_ + "/server.address", "unix:old\n");
   EXPECT_THAT(StartServer(Program(absl::StrCat(kLateLock, "echo $$ >$2/lock\n", kListen, kWait))),
               IsOkAndHolds("unix:" + data_ + "/socket"));
@@ -312,8 +311,7 @@ TEST_F(LocalServerTest, StartsAServerWhenAnotherLeavesTheFolder) {
       .folder = home_.string(),
       .socket = second.SocketPath(),
       .program = Program(absl::StrCat(
-          "cd ", home_.string(),
-          "; if [ -e once ]; then exec 9>>lock; flock -w 1 9 || exit 1; echo $$ >lock; ",
+          "cd ", home_.string(), "; if [ -e once ]; then exec 9>>lock; flock 9; echo $$ >lock; ",
           "echo unix:", second.SocketPath(), " >server.address; touch twice; ",
           "while [ -e once ] && kill -0 $PPID; do sleep 0.01 9>&-; done; exit 1; fi; ",
           "touch once; exit 1")),

@@ -211,13 +211,19 @@ TEST(ProgressBar, IsNotDrawnAfterTheFarewell) {
   report.reporter.Farewell("a\nb");
   const std::string farewell = report.Text();
   EXPECT_THAT(Screen(farewell), ElementsAre("a", "b", ""));
-  static auto& redrawn = *new std::promise<void>;
+  static std::atomic<pid_t> thread = 0;
+  static std::atomic<bool> is_redrawn = false;
   std::thread([] {
+    thread = gettid();
     report.reporter.OnSnapshot(Snapshot());
-    redrawn.set_value();
+    is_redrawn = true;
   }).detach();
-  EXPECT_EQ(redrawn.get_future().wait_for(std::chrono::milliseconds(50)),
-            std::future_status::timeout);
+  const auto sleeps = [] {  // the thread, at the lock
+    return Contents(absl::StrCat("/proc/self/task/", thread.load(), "/stat")).find(") S ") !=
+           std::string::npos;
+  };
+  AwaitThat([&] { return is_redrawn || (thread != 0 && sleeps()); });
+  EXPECT_FALSE(is_redrawn);
 }
 
 // ---- JSON ----

@@ -405,12 +405,17 @@ def test_a_folder_that_cannot_be_made_is_named(
 
 
 @pytest.mark.parametrize(
-    "script,text",
-    [("", "method_comparison: not found beside"), ("echo no room >&2; exit 1", "no room")],
+    "script,text,code",
+    [
+        ("", "method_comparison: not found beside", 4),
+        ("echo no room >&2; exit 1", "no room", 4),
+        ("echo wrong value >&2; exit 2", "wrong value", 2),
+    ],
 )
 def test_a_program_that_is_missing_or_fails_is_an_error(
     script: str,
     text: str,
+    code: int,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capfd: pytest.CaptureFixture[str],
@@ -421,7 +426,7 @@ def test_a_program_that_is_missing_or_fails_is_an_error(
         program = tmp_path / "method_comparison"
         program.write_text(f"#!/bin/sh\n{script}\n")
         program.chmod(0o700)
-    assert command.main(["speed-accuracy", "--out", str(tmp_path)]) == 4
+    assert command.main(["speed-accuracy", "--out", str(tmp_path)]) == code
     assert text in capfd.readouterr().err
 
 

@@ -12,14 +12,25 @@ from conftest import ENDLESS, FIRST_HITS, LIMIT, Home, wait_until
 import ballpiston
 
 
-def test_a_submitted_job_succeeds_when_it_is_watched(client: ballpiston.Client) -> None:
-    job = client.submit(**FIRST_HITS, fresh=True)
+def test_the_life_of_a_job(client: ballpiston.Client) -> None:
+    identifier = uuid.uuid4()
+    job = client.submit(**FIRST_HITS, fresh=True, request_id=identifier)
+    assert client.submit(**FIRST_HITS, fresh=True, request_id=str(identifier)).name == job.name
+    for name in (job.name, job.name.removeprefix("ensembleJobs/")):
+        assert client.job(name).name == job.name
     result = job.watch()
-    assert job.state == "succeeded"
-    assert job.has_ended
-    assert len(result) == 4
-    assert result.job_name == job.name
+    assert (job.state, job.has_ended) == ("succeeded", True)
+    assert (len(result), result.job_name) == (4, job.name)
     assert job.created <= job.started <= job.ended
+    again = client.run(result.specification, fresh=True)
+    assert again.job_name != job.name
+    np.testing.assert_array_equal(again["mean_hit_time"], result["mean_hit_time"])
+    assert job.pin().pinned
+    assert not job.pin(False).pinned
+    job.delete()
+    with pytest.raises(ballpiston.NotFound) as caught:
+        client.job(job.name)
+    assert caught.value.reason == "JOB_NOT_FOUND"
 
 
 def test_the_same_question_is_answered_from_the_store(client: ballpiston.Client) -> None:
@@ -33,25 +44,6 @@ def test_the_same_question_is_answered_from_the_store(client: ballpiston.Client)
     )
     assert not again.answered_from_store
     assert again.name != job.name
-
-
-def test_a_request_id_returns_the_original_job(client: ballpiston.Client) -> None:
-    identifier = uuid.uuid4()
-    first = client.submit(**FIRST_HITS, fresh=True, request_id=identifier)
-    assert client.submit(**FIRST_HITS, fresh=True, request_id=str(identifier)).name == first.name
-
-
-def test_a_specification_can_be_asked_again(client: ballpiston.Client) -> None:
-    result = client.run(**FIRST_HITS)
-    again = client.run(result.specification, fresh=True)
-    assert again.job_name != result.job_name
-    np.testing.assert_array_equal(again["mean_hit_time"], result["mean_hit_time"])
-
-
-def test_a_job_is_found_by_its_name_and_by_its_id(client: ballpiston.Client) -> None:
-    job = client.submit(**FIRST_HITS)
-    assert client.job(job.name).name == job.name
-    assert client.job(job.name.removeprefix("ensembleJobs/")).name == job.name
 
 
 def test_jobs_are_listed_by_state_and_experiment(
@@ -75,35 +67,11 @@ def test_a_cancelled_job_keeps_its_finished_points(
     assert caught.value.job is endless
     assert list(endless.specification.grid.rho)
     assert len(endless.result()) == 0
-
-
-def test_the_error_of_a_job_reaches_another_process(
-    client: ballpiston.Client, endless: ballpiston.Job
-) -> None:
-    endless.cancel()
-    with pytest.raises(ballpiston.JobCancelled) as caught:
-        endless.watch()
     caught.value.metadata["limit"] = "3"
-    error = pickle.loads(pickle.dumps(caught.value))
+    error = pickle.loads(pickle.dumps(caught.value))  # as it reaches another process
     assert type(error) is ballpiston.JobCancelled
     assert str(error) == f"{endless.name} cancelled"
     assert error.metadata == {"limit": "3"} and not hasattr(error, "job")
-
-
-def test_a_pinned_job_can_be_unpinned(client: ballpiston.Client) -> None:
-    job = client.submit(**FIRST_HITS)
-    job.watch()
-    assert job.pin().pinned
-    assert not job.pin(False).pinned
-
-
-def test_a_deleted_job_is_not_found(client: ballpiston.Client) -> None:
-    job = client.submit(**FIRST_HITS, fresh=True)
-    job.watch()
-    job.delete()
-    with pytest.raises(ballpiston.NotFound) as caught:
-        client.job(job.name)
-    assert caught.value.reason == "JOB_NOT_FOUND"
 
 
 def test_a_job_is_found_by_a_text_and_a_list_has_a_limit(client: ballpiston.Client) -> None:

@@ -53,19 +53,27 @@ def test_the_command_line_saves_the_same_arrays(home: Home, tmp_path: Path) -> N
             np.testing.assert_array_equal(saved[name], arrays[name], name)
 
 
-def test_an_interruption_ends_the_conversion_to_arrays(
-    home: Home, first_hits: ballpiston.Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("end,code", [("kill $PPID; sleep 60; echo late", 130), ("exit 1", 4)])
+def test_a_conversion_to_arrays_that_does_not_end_keeps_the_previous_file(
+    end: str,
+    code: int,
+    home: Home,
+    first_hits: ballpiston.Result,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    python = tmp_path / "python3"
-    python.write_text('#!/bin/sh\n[ "$1" = -c ] || { kill $PPID; sleep 60; echo late; }\n')
+    python, saved = tmp_path / "python3", tmp_path / "saved.npz"
+    python.write_text(f'#!/bin/sh\n[ "$1" = -c ] || {{ {end}; }}\n')
     python.chmod(0o700)
     monkeypatch.setenv("BALLPISTON_PYTHON", str(python))
-    words = ("result", first_hits.job_name, "--save", str(tmp_path / "a.npz"))
+    saved.write_text("before")
+    words = ("result", first_hits.job_name, "--save", str(saved))
     command = [home.programs / "ballpiston", *words]
     # Returns when no process has the standard output any more.
     client = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=LIMIT, check=False)
-    assert (client.returncode, client.stdout) == (130, "")
-    assert list(tmp_path.iterdir()) == [python]
+    assert (client.returncode, client.stdout) == (code, "")
+    assert sorted(tmp_path.iterdir()) == [python, saved]
+    assert saved.read_text() == "before"
 
 
 @pytest.mark.parametrize("ending", ["csv", "npz"])

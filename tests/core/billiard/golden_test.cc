@@ -1,6 +1,5 @@
-// The same question gives the same bits: under every instruction set with fused multiply-add, in
-// any number of threads, in any order of the blocks, and in every later version with the same
-// kEngineVersion.
+// The same question gives the same bits: under every instruction set with fused multiply-add, and
+// in every later version with the same kEngineVersion.
 //
 // To change bits on purpose, raise kEngineVersion in core/engine_version.h, so that no point is
 // resumed from a checkpoint of another version. Then run `statistical_test
@@ -11,9 +10,6 @@
 // logarithms come from the C library. The summaries of experiments that are compared with the limit
 // are not compared either, because the spectrum contributes to their estimates. Neither are the
 // summaries of gases, because the exact exchange rate contributes to them.
-#include <mutex>
-#include <thread>
-
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
@@ -156,41 +152,24 @@ std::vector<EnsembleSpec> SpecsOfJumpProcess() {
   return specs;
 }
 
-// One of several threads that compute a point's blocks.
-class SharedQueue : public BlockQueue {
- public:
-  SharedQueue(LocalPoint& point, std::mutex& mutex) : point_(point), mutex_(mutex) {}
-
-  std::optional<Block> Next() override {
-    std::lock_guard lock(mutex_);
-    return point_.NextBlock();
-  }
+// The blocks of a point. The run pauses at every opportunity.
+struct PausingQueue : BlockQueue {
+  explicit PausingQueue(const PointExperiment& experiment) : point(experiment) {}
+  std::optional<Block> Next() override { return point.NextBlock(); }
   void Done(const Block& block, BlockResult result) override {
-    std::lock_guard lock(mutex_);
-    point_.Add(block, std::move(result));
+    point.Add(block, std::move(result));
   }
-  // At every opportunity.
   bool Pause() override { return true; }
 
- private:
-  LocalPoint& point_;
-  std::mutex& mutex_;
+  LocalPoint point;
 };
 
-BlockResult RunInThreads(const PointExperiment& experiment, size_t threads) {
-  LocalPoint point(experiment);
-  std::mutex mutex;
-  const auto work = [&] {
-    SharedQueue queue(point, mutex);
-    const auto run = experiment.StartRun(queue);
-    while (!run->Advance()) continue;
-  };
-  {
-    std::vector<std::jthread> workers;
-    for (size_t i = 0; i < threads; ++i) workers.emplace_back(work);
-  }
-  EXPECT_TRUE(point.finished());
-  return point.Merged();
+BlockResult RunWithPauses(const PointExperiment& experiment) {
+  PausingQueue queue(experiment);
+  const auto run = experiment.StartRun(queue);
+  while (!run->Advance()) continue;
+  EXPECT_TRUE(queue.point.finished());
+  return queue.point.Merged();
 }
 
 bool HasSummaryWithLastBitsOfTheLibrary(const ExperimentKind* experiment) {
@@ -209,23 +188,20 @@ std::string NameOf(absl::string_view made_by, const EnsembleSpec& spec) {
   return name;
 }
 
-void ExpectGoldenInThreads(const EnsembleSpec& spec, absl::string_view made_by) {
+void ExpectGoldenPoint(const EnsembleSpec& spec, absl::string_view made_by) {
   const auto point = PointExperiment::Create(spec, 0);
-  for (const size_t threads : {1u, 2u, 8u}) {
-    SCOPED_TRACE(absl::StrCat(threads, " threads"));
-    const BlockResult merged = RunInThreads(*point, threads);
-    Fingerprint fingerprint;
-    fingerprint.Add(merged);
-    if (!HasSummaryWithLastBitsOfTheLibrary(spec.experiment))
-      fingerprint.Add(point->Summarize(merged));
-    ExpectGolden(NameOf(made_by, spec), fingerprint);
-  }
+  const BlockResult merged = RunWithPauses(*point);
+  Fingerprint fingerprint;
+  fingerprint.Add(merged);
+  if (!HasSummaryWithLastBitsOfTheLibrary(spec.experiment))
+    fingerprint.Add(point->Summarize(merged));
+  ExpectGolden(NameOf(made_by, spec), fingerprint);
 }
 
 TEST_P(Golden, BlocksAndSummaries) {
   const Engine engine = GetParam();
   ForEachTargetOf(engine, [engine] {
-    for (const EnsembleSpec& spec : SpecsOf(engine)) ExpectGoldenInThreads(spec, Name(engine));
+    for (const EnsembleSpec& spec : SpecsOf(engine)) ExpectGoldenPoint(spec, Name(engine));
   });
 }
 
@@ -248,7 +224,7 @@ TEST(GoldenJumpProcess, Walkers) {
 
 TEST(GoldenJumpProcess, Blocks) {
   ForEachFusedTarget([] {
-    for (const EnsembleSpec& spec : SpecsOfJumpProcess()) ExpectGoldenInThreads(spec, "markov");
+    for (const EnsembleSpec& spec : SpecsOfJumpProcess()) ExpectGoldenPoint(spec, "markov");
   });
 }
 

@@ -3,6 +3,8 @@
 
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/random_stream.h"
+#include "core/experiment/all_experiments.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_geometry.h"
 #include "core/markov/relaxation_spectrum.h"
@@ -272,6 +274,20 @@ TEST(PointExperiment, CollisionsAreSharedByTheOrbitsThatTakeThem) {
     const EnsembleSpec spec = SpecOf(&kEnergyRelaxation, point, target);
     EXPECT_EQ(SamplesAskedFor(target, ForecastOf(spec, point)), static_cast<uint64_t>(samples));
   }
+}
+
+// ---- random_stream.h ----
+
+uint64_t StreamAt(const ExperimentKind& experiment, const PointParameters& point,
+                  Model model = Model::kBilliard) {
+  return PointStream({.experiment = &experiment, .model = model}, point);
+}
+
+TEST(PointStream, TheJumpProcessHasItsOwnRandomNumbers) {
+  const PointParameters point = {{kRho, 0.6}, {kDelta, 0.1}};
+  const uint64_t billiard = StreamAt(kEnergyRelaxation, point);
+  EXPECT_NE(StreamAt(kEnergyRelaxation, point, Model::kMarkov), billiard);
+  EXPECT_EQ(StreamAt(kEnergyRelaxation, point, Model::kBilliardReference), billiard);
 }
 
 }  // namespace

@@ -130,14 +130,14 @@ TEST(StandardErrors, ShareThatMeetsIsAboutTheMeasuredOne) {
     const double measured = 1 - static_cast<double>(at_end.counts[bin]) / 2000;
     const double window = *summary.histograms.back().time;
     const double share = ShareThatMeets(PaperGeometry(delta), epsilon, window);
-    EXPECT_GT(share / measured, 0.6) << delta << " " << epsilon;
-    EXPECT_LT(share / measured, 1.6) << delta << " " << epsilon;
+    EXPECT_GT(share / measured, 0.8) << delta << " " << epsilon;
+    EXPECT_LT(share / measured, 1.5) << delta << " " << epsilon;
   }
 }
 
 // In a small cell most meetings of a slow ball are two collisions at once, and the second one
-// undoes the first. Mean squares of z over 20 seeds; found: up to 5, and up to 70 before.
-TEST(StandardErrors, OfARelaxationsCurveAreAtMostThreeTimesTooSmall) {
+// undoes the first. Mean squares of z over 20 seeds; found: up to 2, and up to 70 before.
+TEST(StandardErrors, OfARelaxationsCurveAreAtMostTwiceTooSmall) {
   for (const char* epsilon : {"0.499", "0.49999"}) {
     const std::string question =
         absl::StrCat("energy-relaxation rho=0.7 delta=0.01 model=billiard epsilon=", epsilon);
@@ -155,7 +155,7 @@ TEST(StandardErrors, OfARelaxationsCurveAreAtMostThreeTimesTooSmall) {
         }
       }
       EXPECT_EQ(errors[1], samples == 64 ? 0 : 20);
-      for (size_t i = 1; i < errors.size(); ++i) EXPECT_LE(squares[i], 10 * errors[i]) << i;
+      for (size_t i = 1; i < errors.size(); ++i) EXPECT_LE(squares[i], 4 * errors[i]) << i;
     }
   }
 }

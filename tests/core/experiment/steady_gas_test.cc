@@ -2,49 +2,18 @@
 #include "core/experiment/steady_gas.h"
 
 #include "core/ensemble/point_fold.h"
+#include "core/experiment/steady_group.h"
+#include "tests/core/gas/gases.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 
 namespace ballpiston {
 namespace {
 
-std::unique_ptr<const PointExperiment> PointOf(Model model, int64_t samples = 2000) {
-  return PointExperiment::Create(
-      SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.2), {.samples = samples}, model, 5), 0);
-}
-
-// Computes one chunk at a time, each in a fold of its own. Any chunk that can start may be next.
-BlockResult ByRandomChunks(const PointExperiment& point, unsigned seed) {
-  std::mt19937 random(seed);
-  PointFold fold(point);
-  while (!fold.finished()) {
-    std::vector<uint64_t> startable;
-    for (uint64_t chunk = 0; chunk < point.plan().chunks(); ++chunk) {
-      if (fold.Needs(chunk) && fold.CanStart(chunk)) startable.push_back(chunk);
-    }
-    const uint64_t chunk = startable[random() % startable.size()];
-    std::vector<GroupState> starts(point.plan().groups());
-    starts[chunk % starts.size()] = fold.StartOf(chunk);
-    ChunkFold one(point.plan(), {chunk}, chunk + 1, starts);
-    const Block block = *one.NextBlock();
-    EXPECT_FALSE(one.NextBlock());
-    for (ChunkResult& done : one.Add(block, RunBlock(point, block))) fold.Add(std::move(done));
-  }
-  return fold.Merged();
-}
-
-TEST(SteadyGas, AnyDivisionGivesTheSameBits) {
-  for (const Model model : kModelsThatSampleGases) {
-    const auto point = PointOf(model);
-    const BlockResult whole = FoldPoint(*point);
-    for (const unsigned seed : {1u, 2u}) {
-      EXPECT_EQ(ByRandomChunks(*point, seed), whole) << Name(model);
-    }
-  }
-}
-
 TEST(SteadyGas, ADamagedStateCannotContinue) {
-  const auto point = PointOf(Model::kBilliard, 1);
+  const auto point = PointExperiment::Create(
+      SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.2), {.samples = 1}, Model::kBilliard, 5),
+      0);
   const GroupState state = FoldPoint(*point).groups[3];
   EXPECT_TRUE(point->CanContinue(state));
   EXPECT_FALSE(point->CanContinue({}));
@@ -76,6 +45,29 @@ TEST(SteadyGas, VarianceOfEnergyIsThatOfItsStarts) {
       energies.Add(EnergyOf(DrawGas(gas.geometry(), gas.TemperaturesAtStart(), random)));
     }
     EXPECT_NEAR(*energies.Variance() / gas.VarianceOfEnergy(), 1, 0.15);
+  }
+}
+
+// ---- steady_group.h ----
+
+TEST(SteadyGroup, WindowsHoldTheWholeCharge) {
+  const SteadyShape shape = {.trajectories = 2, .balls = 1, .pistons = 2};
+  SteadyGroup group = shape.NewGroup();
+  std::vector<double> charges;
+  for (int i = 0; i < 13; ++i) {
+    charges.push_back(i * i);
+    group.AddStretch({charges.back(), 0});
+    group = shape.Read(shape.Written(group));  // windows may begin in one chunk and end in another
+  }
+  for (size_t length = 0; length < 5; ++length) {
+    const size_t stretches = size_t{1} << length, windows = charges.size() / stretches;
+    Moments expected;
+    for (size_t i = 0; i < windows; ++i) {
+      const auto first = charges.begin() + static_cast<std::ptrdiff_t>(i * stretches);
+      expected.Add(std::accumulate(first, first + static_cast<std::ptrdiff_t>(stretches), 0.0));
+      expected.Add(0);
+    }
+    EXPECT_EQ(group.windows[length], expected) << length;
   }
 }
 

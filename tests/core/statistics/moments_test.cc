@@ -1,5 +1,8 @@
 #include "core/statistics/moments.h"
 
+#include "core/statistics/cumulants.h"
+#include "core/statistics/histogram.h"
+#include "core/statistics/stated_error.h"
 #include "tests/core/preamble.h"
 #include "tests/oracle/student.h"
 
@@ -79,6 +82,69 @@ TEST(Moments, EffectiveCountIsThatOfANormalLaw) {
   EXPECT_EQ(one.EffectiveCount(), 1u);
   one.Add(3);
   EXPECT_EQ(one.EffectiveCount(), 2u);
+}
+
+// ---- cumulants.h ----
+
+// A Poisson law of mean 2: all its cumulants are 2.
+TEST(Cumulants, CumulantsOfKnownLaws) {
+  constexpr int kNumbers = 1'000'000;
+  Moments poisson, even;
+  double probability = std::exp(-2.0);
+  for (int n = 0; n < 30; ++n) {
+    const auto times = static_cast<int>(std::lround(kNumbers * probability));
+    for (int i = 0; i < times; ++i) poisson.Add(n);
+    probability *= 2.0 / (n + 1);
+  }
+  for (const int order : {2, 3, 4}) EXPECT_NEAR(Cumulant(poisson, order), 2, 0.01) << order;
+  for (int i = 0; i < 10; ++i) even.Add(i % 2 == 0 ? -1 : 1);
+  EXPECT_NEAR(Cumulant(even, 2), 1, 1e-14);
+  EXPECT_NEAR(Cumulant(even, 3), 0, 1e-14);
+  EXPECT_NEAR(Cumulant(even, 4), -2, 1e-14);
+}
+
+TEST(Cumulants, TheJackknifeOfAMeanIsItsStandardError) {
+  const std::vector<double> numbers = {3, 1, 4, 1, 5, 9, 2, 6};
+  Moments all;
+  for (const double x : numbers) all.Add(x);
+  const Jackknifed found = Jackknife(numbers.size(), [&](size_t without) {
+    Moments left;
+    for (size_t i = 0; i < numbers.size(); ++i) {
+      if (i != without) left.Add(numbers[i]);
+    }
+    return left.mean;
+  });
+  EXPECT_NEAR(found.value, all.mean, 1e-14);
+  EXPECT_NEAR(found.error, *all.StandardError(), 1e-14);
+}
+
+// ---- histogram.h ----
+
+// Values at or beyond an end are counted in its bin.
+TEST(Histogram, CountsInTheBinThatHoldsTheValue) {
+  Histogram inside = Histogram::OfBins(-1, 1, 4), beyond = inside;
+  for (const double x : {-1.0, -0.51, -0.5, -0.01, 0.0, 0.49, 0.5, 0.99}) inside.Add(x);
+  EXPECT_EQ(inside.counts, (std::vector<uint64_t>{2, 2, 2, 2}));
+  for (const double x : {1.0, std::nextafter(1.0, 2.0), std::nextafter(-1.0, -2.0)}) beyond.Add(x);
+  EXPECT_EQ(beyond.counts, (std::vector<uint64_t>{1, 0, 0, 2}));
+  beyond.Merge(inside);
+  EXPECT_EQ(beyond.counts, (std::vector<uint64_t>{3, 2, 2, 4}));
+  EXPECT_EQ(beyond.Total(), 11u);
+}
+
+// ---- stated_error.h ----
+
+TEST(StatedError, NeedsEvents) {
+  EXPECT_EQ(StatedError(50, 1, 0.1), 0.1);
+  EXPECT_FALSE(StatedError(49.9, 1, 0.1));
+  EXPECT_FALSE(StatedError(1e6, 1, {}));
+}
+
+TEST(StatedError, IsAtLeastTheRoundingOfTheValue) {
+  EXPECT_EQ(StatedError(64, -2, 0), 2 * kRoundingOfAMean);
+  EXPECT_EQ(StatedError(64, 2, 1e-16), 2 * kRoundingOfAMean);
+  EXPECT_EQ(StatedError(64, 2, 1e-13), 1e-13);
+  EXPECT_EQ(StatedError(64, 0, 0), 0);
 }
 
 }  // namespace

@@ -1,10 +1,14 @@
-// The store on a disk that rejects writes or is full. The simulation (tests/simulation) fails the
-// disk at random; these tests show what it cannot: which write goes first when not all fit.
+// The store on a disk that rejects writes or is full, and after a power cut while it is created.
+// The simulation (tests/simulation) fails the disk at random; these tests show what it cannot:
+// which write goes first when not all fit.
 
 #include "server/store/backup.h"
 #include "server/store/job_table.h"
+#include "server/store/schema.h"
+#include "server/store/sqlite.h"
 #include "server/store/store.h"
 #include "tests/fault/store/fault_disk.h"
+#include "tests/fault/store/power_cut.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::server {
@@ -202,6 +206,25 @@ TEST_F(DiskFailure, ManyWritesAreNotDelayed) {
     });
   }
   EXPECT_EQ(stored.get_future().wait_for(kPatience), std::future_status::ready);
+}
+
+// ---- power_cut.h ----
+
+TEST(PowerCut, AnInterruptedCreationIsCompletedAtTheNextStart) {
+  FaultDisk disk;
+  ASSERT_TRUE(OpenStoreFile(kStorePath).ok());
+  const std::vector<DiskOperation> operations = disk.operations();
+  ASSERT_GT(operations.size(), 10u);
+  for (size_t cut = 0; cut <= operations.size(); ++cut) {
+    for (const Survival survival : kSurvivals) {
+      FaultDisk left(AfterPowerCut({}, operations, cut, survival, 1));
+      const auto database = OpenStoreFile(kStorePath);
+      ASSERT_TRUE(database.ok()) << database.status() << " at " << cut;
+      EXPECT_EQ((*database)->First<std::string>("PRAGMA integrity_check"), "ok");
+      EXPECT_EQ((*database)->Integer("PRAGMA user_version"), kSchemaVersion);
+      EXPECT_EQ((*database)->Integer("SELECT count(*) FROM jobs"), 0);
+    }
+  }
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "tests/fault/store/power_cut.h"
 
+#include "tests/support/dice.h"
+
 namespace ballpiston::server {
 namespace {
 
@@ -72,32 +74,22 @@ class Leftover {
   std::map<int, std::string> contents_;
 };
 
-class Chance {
- public:
-  explicit Chance(uint64_t seed) : bits_(seed) {}
-  bool OneIn(uint64_t n) { return bits_() % n == 0; }
-  size_t Below(size_t n) { return static_cast<size_t>(bits_() % n); }
-
- private:
-  std::mt19937_64 bits_;
-};
-
-void ApplySectors(const DiskOperation& write, bool torn, Chance& chance, Leftover& leftover) {
+void ApplySectors(const DiskOperation& write, bool torn, Dice& dice, Leftover& leftover) {
   for (size_t from = 0; from < write.data.size();) {
     const size_t in_sector = (static_cast<size_t>(write.offset) + from) % kDiskSectorBytes;
     const size_t to = std::min(write.data.size(), from + kDiskSectorBytes - in_sector);
-    if (chance.OneIn(2)) {
-      const bool half = torn && chance.OneIn(4);
+    if (dice.OneIn(2)) {
+      const bool half = torn && dice.OneIn(4);
       leftover.Write(write, from, half ? from + (to - from) / 2 : to);
     }
     from = to;
   }
 }
 
-void ApplySome(const DiskOperation& operation, bool torn, Chance& chance, Leftover& leftover) {
+void ApplySome(const DiskOperation& operation, bool torn, Dice& dice, Leftover& leftover) {
   if (operation.kind == Kind::kWrite) {
-    ApplySectors(operation, torn, chance, leftover);
-  } else if (chance.OneIn(2)) {
+    ApplySectors(operation, torn, dice, leftover);
+  } else if (dice.OneIn(2)) {
     leftover.Apply(operation);
   }
 }
@@ -113,8 +105,8 @@ DiskFiles AfterPowerCut(const DiskFiles& initial, const std::vector<DiskOperatio
     const bool counts = operations[i].kind != Kind::kSync && !operations[i].refused;
     if (counts && !safe[i]) unsafe.push_back(i);
   }
-  Chance chance(seed * 1'000'003 + cut);
-  const size_t moment = unsafe.empty() ? 0 : unsafe[chance.Below(unsafe.size())];
+  Dice dice(seed * 1'000'003 + cut);
+  const size_t moment = unsafe.empty() ? 0 : unsafe[dice.Below(unsafe.size())];
 
   Leftover leftover(initial);
   for (size_t i = 0; i < begun; ++i) {
@@ -125,7 +117,7 @@ DiskFiles AfterPowerCut(const DiskFiles& initial, const std::vector<DiskOperatio
     } else if (survival == Survival::kOldest || survival == Survival::kNewest) {
       if (survival == Survival::kOldest ? i < moment : i >= moment) leftover.Apply(operation);
     } else if (survival != Survival::kNothing) {
-      ApplySome(operation, survival == Survival::kTornSectors, chance, leftover);
+      ApplySome(operation, survival == Survival::kTornSectors, dice, leftover);
     }
   }
   return leftover.Files();

@@ -34,9 +34,9 @@ class LiveWatcher : public grpc::ClientReadReactor<v1::WatchEnsembleJobResponse>
     if (message_.has_job() && client::HasEnded(message_.job().state())) ++ends_;
     StartRead(&message_);
   }
-  void OnDone(const grpc::Status& status) override { done_.set_value(status.ok()); }
+  void OnDone(const grpc::Status& status) override { done_.set_value(status.error_code()); }
 
-  bool AwaitOk() { return done_.get_future().get(); }
+  grpc::StatusCode AwaitEnd() { return done_.get_future().get(); }
   int heard() const { return heard_; }
   int ends() const { return ends_; }
 
@@ -45,7 +45,7 @@ class LiveWatcher : public grpc::ClientReadReactor<v1::WatchEnsembleJobResponse>
   v1::WatchEnsembleJobRequest request_;
   v1::WatchEnsembleJobResponse message_;
   std::atomic<int> heard_ = 0, ends_ = 0;
-  std::promise<bool> done_;
+  std::promise<grpc::StatusCode> done_;
 };
 
 // One health check of the whole server, in seconds.
@@ -90,11 +90,11 @@ int FillQueue(const client::Client& client) {
 
 class LiveWatchers : public testing::Test {
  protected:
-  LiveWatchers()
+  explicit LiveWatchers(double drain_seconds = kDrainSeconds)
       : queue_(Size(100, 1000)),
         server_({.workers = 2,
                  .flags = {absl::StrFormat("--max-active-jobs-per-principal=%d", queue_),
-                           absl::StrFormat("--drain-seconds=%g", kDrainSeconds)}}) {
+                           absl::StrFormat("--drain-seconds=%g", drain_seconds)}}) {
     server_.Start();
     for (size_t i = 0; i < kConnectionsOfWatchers; ++i) {
       stubs_.push_back(v1::EnsembleService::NewStub(server_.Connect()));
@@ -116,7 +116,7 @@ class LiveWatchers : public testing::Test {
 
   void CheckEnds() {
     for (LiveWatcher& watcher : watchers_) {
-      EXPECT_TRUE(watcher.AwaitOk());
+      EXPECT_EQ(watcher.AwaitEnd(), grpc::StatusCode::OK);
       EXPECT_EQ(watcher.ends(), 1);
       findings_.Count("terminal messages, then OK", watcher.ends());
       findings_.Count("messages", watcher.heard());
@@ -167,12 +167,20 @@ TEST_F(LiveWatchers, AllGetTheEndAndHealthAnswersWithAFullQueue) {
   }
 }
 
-TEST_F(LiveWatchers, DoNotDelayTheStop) {
+// A server that would wait for them for an hour.
+class WatchersOfAPatientServer : public LiveWatchers {
+ protected:
+  WatchersOfAPatientServer() : LiveWatchers(3600) {}
+};
+
+TEST_F(WatchersOfAPatientServer, DoNotDelayTheStop) {
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, server_.NewClient().Create(Endless()));
   Attach(Size(100, 1000), job.name());
   AwaitHeard(1);
   const double seconds = SecondsToStop("live watchers");
-  for (LiveWatcher& watcher : watchers_) EXPECT_FALSE(watcher.AwaitOk());
+  for (LiveWatcher& watcher : watchers_) {
+    EXPECT_EQ(watcher.AwaitEnd(), grpc::StatusCode::UNAVAILABLE);  // not at its deadline
+  }
   if (HoldsToTimes()) {
     EXPECT_LT(seconds, kDrainSeconds);
   }

@@ -37,17 +37,17 @@ auto Visitor::UntilAnswered(Call call, bool* repeated) {
 void Visitor::DoSomething() {
   const auto active = std::count_if(jobs_.begin(), jobs_.end(),
                                     [](const OwnJob& job) { return !HasEnded(job.end); });
-  if (jobs_.size() < MostKept() && active < kMostActive && Chance(0.5)) return Create();
+  if (jobs_.size() < MostKept() && active < kMostActive && dice_.Chance(0.5)) return Create();
   if (jobs_.empty()) return;
-  const size_t index = Pick(jobs_.size());
+  const size_t index = dice_.Below(jobs_.size());
   OwnJob& job = jobs_[index];
-  if (Chance(0.1)) return AskAgain(job);
-  if (Chance(0.05)) return List();
+  if (dice_.Chance(0.1)) return AskAgain(job);
+  if (dice_.Chance(0.05)) return List();
   if (!HasEnded(job.end)) {
-    return Chance(0.2) ? Cancel(job) : Chance(0.5) ? Get(job) : Watch(job);
+    return dice_.Chance(0.2) ? Cancel(job) : dice_.Chance(0.5) ? Get(job) : Watch(job);
   }
-  if (Chance(jobs_.size() < MostKept() ? 0.2 : 0.5)) return Delete(index);
-  return Chance(0.5) ? Fetch(job) : Get(job);
+  if (dice_.Chance(jobs_.size() < MostKept() ? 0.2 : 0.5)) return Delete(index);
+  return dice_.Chance(0.5) ? Fetch(job) : Get(job);
 }
 
 // `fresh`: not the answer of another client's job.
@@ -61,7 +61,7 @@ absl::StatusOr<v1::EnsembleJob> Visitor::Ask(const OwnJob& job) {
 
 void Visitor::Create() {
   OwnJob job;
-  job.question = Pick(exam_.questions.size());
+  job.question = dice_.Below(exam_.questions.size());
   job.request_id = client::NewRequestId();
   const auto made = Ask(job);
   if (!made.ok()) return Wrong(job, absl::StrCat("Create: ", made.status().ToString()));

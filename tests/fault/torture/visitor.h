@@ -13,6 +13,7 @@
 #include "client/library/client.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
+#include "tests/support/dice.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::torture {
@@ -27,7 +28,7 @@ class Visitor {
  public:
   Visitor(std::shared_ptr<grpc::Channel> channel, const Exam& exam, uint64_t seed,
           Findings& findings)
-      : channel_(std::move(channel)), exam_(exam), findings_(findings), random_(seed) {}
+      : channel_(std::move(channel)), exam_(exam), findings_(findings), dice_(seed) {}
 
   void VisitUntil(const std::atomic<bool>& enough) {
     while (!enough) DoSomething();
@@ -66,8 +67,6 @@ class Visitor {
 
   // `from`: the call that was answered.
   void Learn(OwnJob& job, const v1::EnsembleJob& seen, const char* from);
-  bool Chance(double probability) { return std::bernoulli_distribution(probability)(random_); }
-  size_t Pick(size_t count) { return std::uniform_int_distribution<size_t>(0, count - 1)(random_); }
   void Wrong(const OwnJob& job, const std::string& what) {
     findings_.Wrong(absl::StrCat(job.name.empty() ? job.request_id : job.name, " (question ",
                                  job.question, "): ", what));
@@ -77,7 +76,7 @@ class Visitor {
   const client::Client client_{channel_, absl::Seconds(20)};
   const Exam& exam_;
   Findings& findings_;
-  std::mt19937_64 random_;
+  Dice dice_;
   std::vector<OwnJob> jobs_;
 };
 

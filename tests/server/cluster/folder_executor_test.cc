@@ -83,7 +83,7 @@ class FolderExecutorTest : public testing::Test {
   }
 
   // Real workers compute what is left.
-  void ComputeAll(RecordingJournal& journal) {
+  void ComputeAll(RecordingJournal& journal, const EnsembleSpec& spec = SomeSpec()) {
     WorkerHost host = {.now = [] { return std::chrono::steady_clock::time_point(); },
                        .sleep = [](auto) {},
                        .random_bits = [] { return 1; },
@@ -96,7 +96,7 @@ class FolderExecutorTest : public testing::Test {
     }
     ASSERT_TRUE(journal.outcome);
     EXPECT_OK(*journal.outcome);
-    const auto experiment = PointExperiment::Create(SomeSpec(), 0);
+    const auto experiment = PointExperiment::Create(spec, 0);
     EXPECT_TRUE(journal.finished.at(0) == FoldPoint(*experiment));
     EXPECT_EQ(journal.merged.at(0), experiment->plan().samples());
   }
@@ -351,6 +351,12 @@ TEST_F(FolderExecutorTest, ALeaseGoesBackIfMemoryRunsOutWhileItIsLaid) {
   executor_->Look();
   EXPECT_EQ(executor_->Status().problem, "");
   ComputeAll(*journal);
+}
+
+// A lease has the states from which its trajectories continue.
+TEST_F(FolderExecutorTest, TrajectoriesContinueInLaterLeases) {
+  const EnsembleSpec spec = SpecOf(kGasConduction, Model::kMarkov, 600);
+  ComputeAll(*Begin(spec), spec);
 }
 
 // ---- many workers ----

@@ -26,10 +26,7 @@ std::optional<Range> Chunks(uint64_t first, uint64_t end, int attempt = 1) {
 }
 
 std::vector<ChunkResult> ChunksOf(const OpenPoint& point, uint64_t first, uint64_t end) {
-  Lease lease;
-  lease.start.chunk = first;
-  lease.end = end;
-  return ComputedChunks(lease, *point.experiment());
+  return ComputedChunks({.experiment = point.experiment(), .start = {.chunk = first}, .end = end});
 }
 
 void AddChunks(OpenPoint& point, uint64_t first, uint64_t end) {
@@ -175,10 +172,7 @@ TEST(OpenPoint, AFiniteCapacityEndsAtTheExpectedEnd) {
 
 // The variance of these samples is larger than expected.
 void AddScatteredChunks(OpenPoint& point, uint64_t first, uint64_t end) {
-  Lease lease;
-  lease.start.chunk = first;
-  lease.end = end;
-  for (ChunkResult& chunk : ComputedChunks(lease, *point.experiment())) {
+  for (ChunkResult& chunk : ChunksOf(point, first, end)) {
     chunk.result.moments[0].m2 *= 1e4;
     point.fold().Add(std::move(chunk));
   }
@@ -210,12 +204,6 @@ std::shared_ptr<const PointExperiment> SteadyExperiment() {
                                  0);
 }
 
-ChunkResult Computed(const Lease& lease) {
-  ChunkFold fold(lease.experiment->plan(), lease.start, lease.end, lease.groups);
-  const Block block = *fold.NextBlock();
-  return fold.Add(block, RunBlock(*lease.experiment, block)).front();
-}
-
 TEST(OpenPoint, GroupsOfTrajectoriesAreLeasesOfTheirOwn) {
   OpenPoint point(SteadyExperiment());
   std::vector<Lease> leases;
@@ -227,7 +215,7 @@ TEST(OpenPoint, GroupsOfTrajectoriesAreLeasesOfTheirOwn) {
   }
   point.Return(5, 6, 2);
   EXPECT_EQ(Next(point, 1000, kElsewhere), Chunks(5, 6, 2));
-  const ChunkResult first = Computed(leases[0]);
+  const ChunkResult first = ComputedChunks(leases[0]).front();
   point.fold().Add(first);
   const auto next = point.NextChunks({.local = false, .seconds = 1000});
   ASSERT_TRUE(next);

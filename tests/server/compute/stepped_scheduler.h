@@ -6,6 +6,7 @@
 #include "server/compute/run_journal.h"
 #include "server/compute/scheduler.h"
 #include "tests/server/preamble.h"
+#include "tests/server/worker/computed_chunks.h"
 
 namespace ballpiston::server {
 
@@ -181,23 +182,6 @@ class SteppedExecutor {
   const Capacity capacity_ = {
       .share = [](const Lease& lease) { return std::make_shared<Fold>(lease); }};
 };
-
-// The chunks of a lease in order, with what the lease has of its first chunk.
-inline std::vector<ChunkResult> ComputedChunks(const Lease& lease,
-                                               const PointExperiment& experiment) {
-  ChunkFold fold(experiment.plan(), lease.start, lease.end);
-  std::vector<ChunkResult> chunks;
-  while (const std::optional<Block> block = fold.NextBlock()) {
-    for (ChunkResult& chunk : fold.Add(*block, RunBlock(experiment, *block))) {
-      chunks.push_back(std::move(chunk));
-    }
-  }
-  return chunks;
-}
-
-inline std::vector<ChunkResult> ComputedChunks(const Lease& lease) {
-  return ComputedChunks(lease, *lease.experiment);
-}
 
 // An executor elsewhere: the test decides when a lease is taken, which chunks are reported, how
 // often and in which order, and whether the lease is returned.

@@ -5,26 +5,6 @@ namespace {
 
 // ---- Create ----
 
-TEST(EnsembleService, AJobRunsToItsEnd) {
-  RunningServer server;
-  const EnsembleJob made = server.Created(CreateRequest(Equilibrium(3, 10)));
-  EXPECT_THAT(made.name(), testing::StartsWith("ensembleJobs/"));
-  EXPECT_EQ(made.spec().SerializeAsString(), Equilibrium(3, 10).SerializeAsString());
-  EXPECT_TRUE(made.has_create_time());
-  EXPECT_FALSE(made.engine_version().empty());
-  const EnsembleJob ended = server.AwaitEnd(made.name());
-  EXPECT_EQ(ended.state(), EnsembleJob::SUCCEEDED);
-  EXPECT_EQ(ended.progress().points(), 3);
-  EXPECT_EQ(ended.progress().points_done(), 3);
-  EXPECT_EQ(ended.progress().samples(), 3 * 10 * kFakeSamplesPerBlock);
-  EXPECT_EQ(ended.progress().fraction(), 1);
-  EXPECT_TRUE(ended.has_start_time());
-  EXPECT_TRUE(ended.has_end_time());
-  EnsembleJob now = server.Get(made.name());
-  now.mutable_spec()->clear_grid();  // a watch leaves it out
-  EXPECT_EQ(now.SerializeAsString(), ended.SerializeAsString());
-}
-
 // gRPC's own retries obey the metadata.
 TEST(EnsembleService, ALimitThatWaitingCuresTellsHowLong) {
   Gate gate;

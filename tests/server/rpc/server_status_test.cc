@@ -29,6 +29,10 @@ class ServerStatusTest : public testing::Test {
     return *status;
   }
 
+  std::string Metrics(std::optional<absl::Time> expiry = std::nullopt) {
+    return prometheus::TextSerializer().Serialize(ServerMetrics(context_, expiry));
+  }
+
   TemporaryFolder folder_;
   Gate gate_;
   const Limits limits_ = {.max_active_jobs_per_principal = 7,
@@ -97,6 +101,7 @@ TEST_F(ServerStatusTest, CountsQueuedAndRunningWork) {
   Submit("alice");
   gate_.AwaitWaiting(2);
   Submit("bob");
+  const auto stream = quotas_.streams.Take("alice");
   const v1::ServerStatus status = AskedBy("root", Role::kAdmin);
   EXPECT_EQ(status.state(), v1::ServerStatus::SERVING);
   EXPECT_EQ(status.start_time().seconds(), 1'700'000'000);
@@ -105,6 +110,11 @@ TEST_F(ServerStatusTest, CountsQueuedAndRunningWork) {
   EXPECT_EQ(status.busy_workers(), 2);
   EXPECT_EQ(status.running_jobs(), 1);
   EXPECT_EQ(status.queued_jobs(), 1);
+  EXPECT_EQ(status.streams(), 1);
+  for (const char* gauge :
+       {"jobs{state=\"running\"} 1", "jobs{state=\"queued\"} 1", "busy_workers 2", "streams 1"}) {
+    EXPECT_THAT(Metrics(), HasSubstr(absl::StrCat("\nballpiston_", gauge, "\n")));
+  }
   EXPECT_EQ(status.stored_jobs(), 2);
   EXPECT_GT(status.store_bytes(), 4096);
   EXPECT_GT(status.rates().wall_hit(), 0);
@@ -142,12 +152,9 @@ TEST_F(ServerStatusTest, OnlyAnAdministratorSeesOtherPrincipals) {
 }
 
 TEST_F(ServerStatusTest, TheExpiryOfACertificateIsAMetricIfThereIsOne) {
-  const auto page = [this](std::optional<absl::Time> expiry) {
-    return prometheus::TextSerializer().Serialize(ServerMetrics(context_, expiry));
-  };
   constexpr char kExpiry[] = "ballpiston_certificate_expiry_timestamp_seconds";
-  EXPECT_THAT(page(std::nullopt), testing::Not(testing::HasSubstr(kExpiry)));
-  EXPECT_THAT(page(absl::FromUnixSeconds(2'000'000'000)),
+  EXPECT_THAT(Metrics(), testing::Not(testing::HasSubstr(kExpiry)));
+  EXPECT_THAT(Metrics(absl::FromUnixSeconds(2'000'000'000)),
               testing::HasSubstr(absl::StrCat("\n", kExpiry, " 2000000000\n")));
 }
 

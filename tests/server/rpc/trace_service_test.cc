@@ -55,7 +55,10 @@ TEST_F(TraceServiceTest, TheStartComesFirstThenAsManyEventsAsAsked) {
   for (const int64_t events : {1, kEventsOfMessage, kEventsOfMessage + 1, 1000}) {
     const auto messages = Trace(TraceRequest(events));
     ASSERT_GE(messages.size(), 2u);
-    EXPECT_TRUE(messages[0].has_start());
+    const v1::TraceStart& start = messages[0].start();
+    EXPECT_EQ(start.event(), v1::TraceEvent::start);
+    EXPECT_NEAR(start.tip(), (1 - start.lambda()) / 2, 1e-15);
+    EXPECT_FALSE(start.has_cells() || start.has_temperature());
     EXPECT_EQ(messages[0].events_size(), 0);
     int64_t told = 0;
     double time = 0;
@@ -71,41 +74,12 @@ TEST_F(TraceServiceTest, TheStartComesFirstThenAsManyEventsAsAsked) {
   }
 }
 
-TEST_F(TraceServiceTest, ThePairHasOneBallAndOnePistonAndItsEnergy) {
-  const auto start = Trace(TraceRequest(1)).at(0).start();
-  EXPECT_EQ(start.event(), v1::TraceEvent::start);
-  EXPECT_EQ(start.rho(), kPaperRho);
-  EXPECT_EQ(start.delta(), 0.15);
-  EXPECT_NEAR(start.tip(), (1 - start.lambda()) / 2, 1e-15);
-  EXPECT_GT(start.eta(), 0);
-  EXPECT_FALSE(start.has_cells() || start.has_temperature());
-  ASSERT_EQ(start.balls_size(), 1);
-  ASSERT_EQ(start.pistons_size(), 1);
-  EXPECT_TRUE(start.pistons(0).vertical());
-  EXPECT_NEAR(start.balls(0).energy() + start.pistons(0).energy(), 0.5, 1e-15);
-}
-
-TEST_F(TraceServiceTest, AGasHasTheBodiesOfItsShape) {
-  v1::TraceOrbitRequest request = TraceRequest(1, "4x3");
-  request.set_temperature(2);
-  const auto start = Trace(request).at(0).start();
-  EXPECT_EQ(start.cells(), "4x3");
-  EXPECT_EQ(start.temperature(), 2);
-  ASSERT_EQ(start.balls_size(), 12);
-  ASSERT_EQ(start.pistons_size(), 24);
-  EXPECT_NEAR(start.balls(6).x(), 2, 0.5);
-  EXPECT_NEAR(start.balls(6).y(), 1, 0.5);
-  EXPECT_TRUE(start.pistons(6).vertical());
-  EXPECT_EQ(start.pistons(6).y(), 1);
-  EXPECT_FALSE(start.pistons(18).vertical());
-  EXPECT_EQ(start.pistons(18).x(), 2);
-  EXPECT_EQ(Trace(TraceRequest(1, "7")).at(0).start().pistons_size(), 7);
-  EXPECT_EQ(Trace(TraceRequest(1, "7")).at(0).start().temperature(), 1);
-}
-
 TEST_F(TraceServiceTest, EventsHaveTheBodiesThatTakePart) {
   int exchanges = 0;
-  for (const auto& message : Trace(TraceRequest(2000, "3x3"))) {
+  const auto messages = Trace(TraceRequest(2000, "3x3"));
+  EXPECT_EQ(messages.at(0).start().cells(), "3x3");
+  EXPECT_EQ(messages[0].start().temperature(), 1);  // by default
+  for (const auto& message : messages) {
     for (const v1::TraceEvent& event : message.events()) {
       EXPECT_EQ(event.has_ball(), event.event() != v1::TraceEvent::piston_wall);
       EXPECT_EQ(event.has_piston(), event.event() != v1::TraceEvent::ball_wall);

@@ -2,7 +2,6 @@
 #include "grpcpp/generic/generic_stub.h"
 #include "tests/server/http_get.h"
 #include "tests/server/preamble.h"
-#include "tests/server/rpc/watch_stream.h"
 
 namespace ballpiston::server {
 namespace {
@@ -39,11 +38,9 @@ std::map<std::string, double> Samples(const std::string& page) {
 // Each test has several expectations, because the HTTP server of each test takes up to 2 s to stop.
 class MetricsTest : public testing::Test {
  protected:
-  RunningServer& Start(bool held = false) {
-    server_.emplace(TestServerOptions{.factory = held ? GatedExperiments(gate_) : FakeExperiments(),
-                                      .limits = {.max_points_per_job = 10},
-                                      .metrics_listen = "localhost:0"});
-    return *server_;
+  RunningServer& Start() {
+    return server_.emplace(
+        TestServerOptions{.limits = {.max_points_per_job = 10}, .metrics_listen = "localhost:0"});
   }
   std::string Address() { return server_->server().metrics_address(); }
   std::string Page() { return HttpGet(Address(), "/metrics"); }
@@ -53,7 +50,6 @@ class MetricsTest : public testing::Test {
     AwaitThat([&] { return Metrics().at(metric) == value; });
   }
 
-  Gate gate_;
   std::optional<RunningServer> server_;
 };
 
@@ -105,25 +101,6 @@ TEST_F(MetricsTest, CountersCountCallsJobsAndSamples) {
                        "grpc_service=\"ballpiston.v1.EnsembleService\",grpc_type="
                        "\"server_stream\"}"),
             3);
-}
-
-TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
-  RunningServer& server = Start(true);
-  const std::string first = server.Submit(Equilibrium(2, 50));
-  gate_.AwaitWaiting(2);
-  const std::string second = server.Submit(Equilibrium(1, 1));
-  WatchStream watch(server, first);
-  ASSERT_TRUE(watch.Next());
-  const auto metrics = Metrics();
-  EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"running\"}"), 1);
-  EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"queued\"}"), 1);
-  EXPECT_EQ(metrics.at("ballpiston_busy_workers"), 2);
-  EXPECT_EQ(metrics.at("ballpiston_streams"), 1);
-  gate_.Open();
-  EXPECT_OK(watch.End());
-  server.AwaitEnd(second);
-  Await("ballpiston_streams", 0);
-  EXPECT_EQ(Metrics().at("ballpiston_jobs{state=\"running\"}"), 0);
 }
 
 TEST_F(MetricsTest, MalformedRequestsDoNotStopTheEndpoint) {

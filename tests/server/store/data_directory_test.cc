@@ -23,10 +23,12 @@ class DataFolder : public ::testing::Test {
 TEST_F(DataFolder, TheLockHasTheServersProcessIdWhileItIsHeld) {
   Make(0700);
   WriteFile(path_ + "/lock", "123456789012345\n");  // of a server that was killed
+  WriteFile(path_ + "/server.address", "unix:old\n");
   {
     ASSERT_OK_AND_ASSIGN(const auto directory, DataDirectory::Open(path_));
     EXPECT_EQ(directory.FilePath("lock"), path_ + "/lock");
     EXPECT_EQ(Contents(path_ + "/lock"), OwnId());
+    EXPECT_FALSE(std::filesystem::exists(path_ + "/server.address"));
     WriteFile(path_ + "/lock", "12345\n");  // a second server does not change it
     EXPECT_THAT(DataDirectory::Open(path_), StatusIs(absl::StatusCode::kFailedPrecondition));
     EXPECT_EQ(Contents(path_ + "/lock"), "12345\n");

@@ -41,7 +41,7 @@ TEST(LeaseFile, NamesSayWhoseTheFileIs) {
 
 TEST(LeaseFile, TheChunksFollowTheLease) {
   const Lease lease = LeaseOf(SpecOf(kMarkovProperty, Model::kBilliard));
-  const LeaseReport report = {.chunks = AllChunks(*lease.experiment), .seconds = 0.1};
+  const LeaseReport report = {.chunks = ComputedChunks(lease), .seconds = 0.1};
   const std::string file = BytesOf(RecordOf(lease)) + BytesOf(report);
   absl::string_view rest = file;
   EXPECT_OK(TakeLease(rest));
@@ -94,6 +94,7 @@ void ExpectComesBack(const Lease& lease) {
   };
   EXPECT_EQ(numbers(back), numbers(lease));
   EXPECT_EQ(back.start.merged, lease.start.merged);
+  EXPECT_EQ(back.groups, lease.groups);
   EXPECT_EQ(back.spec->seed, lease.spec->seed);
   EXPECT_EQ(back.spec->target.estimate, lease.spec->target.estimate);
   const PointExperiment &then = *lease.experiment, &now = *back.experiment;
@@ -137,6 +138,13 @@ TEST(LeaseRecord, APartOfAPointOfAGridComesBack) {
   for (uint64_t i = 0; i < 2; ++i) {
     lease.start.merged.Merge(RunBlock(experiment, experiment.plan().BlockAt(1, i)));
   }
+  ExpectComesBack(lease);
+}
+
+TEST(LeaseRecord, TheStatesOfTrajectoriesComeBack) {
+  Lease lease = LeaseOf(SpecOf(kGasConduction, Model::kMarkov, 600));
+  lease.start.chunk = lease.experiment->plan().groups();
+  lease.groups = FoldPoint(*lease.experiment).groups;
   ExpectComesBack(lease);
 }
 

@@ -72,17 +72,6 @@ storage::Lease RecordOf(const Lease& lease, double touch_seconds) {
   return LeaseRecord(lease, "a server", touch_seconds);
 }
 
-std::vector<ChunkResult> AllChunks(const PointExperiment& experiment) {
-  ChunkFold fold(experiment.plan(), {}, experiment.plan().chunks());
-  std::vector<ChunkResult> chunks;
-  while (const auto block = fold.NextBlock()) {
-    for (ChunkResult& chunk : fold.Add(*block, RunBlock(experiment, *block))) {
-      chunks.push_back(std::move(chunk));
-    }
-  }
-  return chunks;
-}
-
 LeaseReport ReportsIn(absl::string_view file) {
   EXPECT_OK(TakeLease(file));
   LeaseReport all;

@@ -1,10 +1,10 @@
 // Leases for tests of the worker: of every experiment, by every model that samples.
 #pragma once
 
-#include "core/ensemble/chunk_fold.h"
 #include "core/ensemble/ensemble_spec.h"
 #include "core/ensemble/point_experiment.h"
 #include "server/worker/lease_file.h"
+#include "tests/server/worker/computed_chunks.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::server {
@@ -24,9 +24,6 @@ Lease LeaseOf(const EnsembleSpec& spec, uint64_t first = 0, uint64_t end = 0);
 
 // The record of the lease, from some server.
 storage::Lease RecordOf(const Lease& lease, double touch_seconds = 20);
-
-// All chunks of the plan, computed block by block.
-std::vector<ChunkResult> AllChunks(const PointExperiment& experiment);
 
 // All reports in the file of a lease, merged into one.
 LeaseReport ReportsIn(absl::string_view file);

@@ -67,7 +67,7 @@ class WorkerTest : public testing::Test {
   }
 
   const Lease lease_ = LeaseOf(SpecOf(kFirstHit, Model::kBilliard, 100'000));
-  const std::vector<ChunkResult> chunks_ = AllChunks(*lease_.experiment);
+  const std::vector<ChunkResult> chunks_ = ComputedChunks(lease_);
   FakeFiles files_;
   Clock::time_point now_ = {};
   double seconds_of_a_look_ = 0;
@@ -184,7 +184,7 @@ TEST_F(WorkerTest, ChunksHaveTheBitsOfAWholePoint) {
   for (const EnsembleSpec& spec : EverySampledSpec()) {
     SCOPED_TRACE(NameOf(spec));
     const Lease lease = LeaseOf(spec);
-    EXPECT_TRUE(AreEqual(Compute(lease), AllChunks(*lease.experiment)));
+    EXPECT_TRUE(AreEqual(Compute(lease), ComputedChunks(lease)));
   }
 }
 

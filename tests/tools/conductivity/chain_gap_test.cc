@@ -3,6 +3,7 @@
 #include "core/markov/relaxation_spectrum.h"
 #include "tests/core/preamble.h"
 #include "tests/support/nightly.h"
+#include "tools/conductivity/contact_matrix.h"
 
 namespace ballpiston {
 namespace {
@@ -37,6 +38,21 @@ TEST(ChainGap, ChainsHaveTheirDocumentedGaps) {
   HasTheDocumentedGap({2, 1, 2, 1, 2}, {6, 8, 10}, {0.0824165, 1e-7});
   HasTheDocumentedGap({1, 2, 1, 2, 1}, {6, 8, 10}, {0.1018311, 2e-7});
   HasTheDocumentedGap({2, 1, 2, 1, 2, 1}, {4, 6, 8}, {0.067823, 1e-6});
+}
+
+// ---- contact_matrix.h ----
+
+// The elements of low degrees do not depend on the largest degree.
+TEST(ContactMatrix, HighDegreesAreExactToRounding) {
+  const auto differ = [](SiteDimensions d, int low_degree, int high_degree) {
+    const Eigen::MatrixXd low = ContactMatrix(d, low_degree).elements();
+    const Eigen::MatrixXd high =
+        ContactMatrix(d, high_degree).elements().topLeftCorner(low.rows(), low.cols());
+    const Eigen::VectorXd scale = low.diagonal().cwiseMax(1e-3).cwiseSqrt();
+    return ((high - low).array() / (scale * scale.transpose()).array()).abs().maxCoeff();
+  };
+  EXPECT_LE(differ({2, 1}, 12, 20), kContactMatrixError);
+  EXPECT_LE(differ({2, 2}, 8, 12), kContactMatrixError);
 }
 
 }  // namespace
