@@ -120,6 +120,7 @@ std::optional<JobRecord> Accept(Database& database, const Limits& limits, Accept
     earlier->job.set_answered_from_store(!is_retry);
     return earlier;
   }
+  if (!acceptance.violations.empty()) database.Fail(InvalidSpec(acceptance.violations));
   CheckLoad(database, limits, record.job);
   CheckStoreSize(database, limits);
   if (!acceptance.fresh) Continue(database, acceptance);

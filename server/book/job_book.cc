@@ -84,6 +84,7 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   SetNumbers({.bytes = static_cast<int64_t>(job.spec().ByteSizeLong())}, job);
   acceptance.fresh = request.fresh();
   acceptance.samples = SamplesOfAllPoints(checked.spec);
+  acceptance.violations = checked.violations;
   return acceptance;
 }
 

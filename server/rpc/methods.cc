@@ -40,9 +40,9 @@ absl::StatusOr<v1::EnsembleJob> CreateEnsembleJob(ServiceContext& service, const
   check.LabelsIn("labels", request.labels());
   Normalize(*accepted.mutable_spec());
   CheckedSpec spec = CheckSpec(accepted.spec());
-  if (spec.violations.empty()) AddViolations(service.ladder.ViolationsHere(spec.spec), spec);
-  const absl::Status checked = Check(spec, check);
-  if (!checked.ok()) return checked;
+  const bool is_valid = spec.violations.empty();
+  if (is_valid) AddViolations(service.ladder.ViolationsHere(spec.spec), spec);
+  if (!is_valid || !check.ok()) return Check(spec, check);
   absl::StatusOr<v1::EnsembleJob> job = service.book.Create(call.caller, accepted, spec);
   if (job.ok()) LogAcceptance(call, *job);
   return job;
