@@ -223,8 +223,6 @@ void AddViolations(std::vector<FieldViolation> found, CheckedSpec& checked) {
 
 void Normalize(v1::EnsembleSpec& message) {
   DropSignsOfZeros(message);
-  // The order of the names means nothing.
-  if (message.grid().table_size() > 1) std::ranges::sort(*message.mutable_grid()->mutable_table());
   for (std::string& cells : *message.mutable_grid()->mutable_cells()) {  // 03x2 is 3x2
     if (const auto shape = ParseGasShape(cells); shape.ok()) cells = Text(*shape);
   }
@@ -277,6 +275,8 @@ v1::EnsembleSpec::Model ModelMessage(Model model) {
 }
 
 std::string QuestionBytes(v1::EnsembleSpec message) {
+  // The order of the names means nothing.
+  if (message.grid().table_size() > 1) std::ranges::sort(*message.mutable_grid()->mutable_table());
   if (message.model() == v1::EnsembleSpec::AUTO) message.clear_model();
   if (message.precision() == v1::EnsembleSpec::DOUBLE) message.clear_precision();
   v1::Target& target = *message.mutable_target();

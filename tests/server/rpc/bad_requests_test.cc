@@ -65,6 +65,7 @@ std::vector<BadRequest> BadRequests() {
             "}"),
        {"spec.grid.table[0]", kAndMore},
        "(and 100 more)"},
+      {create, with("grid { table: ['x', 'delta'] }"), {"spec.grid.table[0]"}},
       {create, hit + "request_id: 'not a uuid'", {"request_id"}},
       {create, hit + "priority: 101", {"priority"}, "-100 to 100"},
       {create, hit + "priority: -101", {"priority"}, "-100 to 100"},
