@@ -152,9 +152,10 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
     }
     begun = BeginCancellation(database, record, request_id);
     Failpoint("cancel.in_transaction");
-    const bool is_replay = !request_id.empty() && record.cancel_request_id == request_id;
     const JobState state = record.job.state();
-    if (HasEnded(state) && !is_replay) {
+    // Also several cancellations that were accepted at the same time can be retried.
+    const bool is_retry = !request_id.empty() && state == v1::EnsembleJob::CANCELLED;
+    if (HasEnded(state) && !is_retry) {
       database.Fail(JobAlreadyEnded(JobName(id), v1::EnsembleJob::State_Name(state)));
     }
     return record;

@@ -277,7 +277,7 @@ class Job:
         """Stops the job. Its finished points stay.
 
         Raises:
-            FailedPrecondition: it has already ended (reason JOB_ALREADY_ENDED).
+            FailedPrecondition: it has already succeeded or failed (reason JOB_ALREADY_ENDED).
         """
         request = ensemble_pb2.CancelEnsembleJobRequest(
             name=self.name, request_id=str(uuid.uuid4())
