@@ -95,7 +95,7 @@ void Continue(Database& database, Acceptance& acceptance) {
   const auto asks_for_more = [&](const v1::EnsembleJob& earlier) {
     const double samples = earlier.progress().samples();
     if (samples == 0) return false;
-    if (!target.has_tolerance()) return acceptance.samples > samples;
+    if (!target.has_tolerance()) return acceptance.samples >= samples;
     const v1::Target& before = earlier.spec().target();
     return !before.has_tolerance() || target.tolerance() < before.tolerance();
   };

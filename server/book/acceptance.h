@@ -8,8 +8,8 @@
 // is decided inside one transaction of the store. The store runs its transactions one after the
 // other, so many equal requests at the same time make one job.
 //
-// A new job continues an earlier one that SUCCEEDED in answering the same question with a smaller
-// number of samples or a larger tolerance: each point begins where that job's point ended, if the
+// A new job continues an earlier one that SUCCEEDED in answering the same question with no more
+// samples or a larger tolerance: each point begins where that job's point ended, if the
 // same model answers it. So the job computes only the difference, and its result has the bytes of
 // one long run. If that job is deleted meanwhile, the points begin anew. If another machine
 // computed a point's last chunk, the part of it that the target cut short is computed again.
@@ -33,8 +33,8 @@ namespace ballpiston::server {
 struct Acceptance {
   JobRecord record;    // the new job, with the id and the hash of its request
   bool fresh = false;  // do not return an earlier job
-  // The samples of all points for which the target asks; 0 with a tolerance, a budget, or a model
-  // without samples.
+  // The samples of all points for which the target asks, rounded up as the points' plans do; 0 with
+  // a tolerance, a budget, or a model without samples.
   double samples = 0;
   std::vector<FieldViolation> violations;  // what this machine cannot do
 };

@@ -48,14 +48,12 @@ namespace {
 // The samples of all points together that the target asks for. Returns 0 if it names no number of
 // samples or collisions, or if the model takes no samples.
 double SamplesOfAllPoints(const EnsembleSpec& spec) {
-  const Target& target = spec.target;
-  if (target.IsOpenEnded() || NeedsNoSamples(spec)) return 0;
+  if (spec.target.IsOpenEnded() || NeedsNoSamples(spec)) return 0;
   const size_t points = PointCount(spec);
   double samples = 0;
   for (size_t i = 0; i < points; ++i) {
-    // Only a number of collisions needs the forecast.
-    const Forecast forecast = target.collisions ? ForecastOf(spec, PointAt(spec, i)) : Forecast();
-    samples += static_cast<double>(SamplesAskedFor(target, forecast));
+    const ChunkPlan plan = PlanFor(spec, PointAt(spec, i));
+    samples += static_cast<double>(plan.samples() - plan.warm_up());
   }
   return samples;
 }
