@@ -20,6 +20,10 @@ struct CheckedSpec {
 // version does not know is a violation, because it might change the answer.
 CheckedSpec CheckSpec(const v1::EnsembleSpec& message);
 
+// Adds a violation of `path` for each field that this version does not know, at most 100.
+void AddUnknownFields(const char* path, const google::protobuf::Message& message,
+                      std::vector<FieldViolation>& violations);
+
 // Adds violations that were found in checked.spec.
 void AddViolations(std::vector<FieldViolation> found, CheckedSpec& checked);
 

@@ -34,6 +34,7 @@ absl::StatusOr<v1::EnsembleJob> CreateEnsembleJob(ServiceContext& service, const
                                                   const v1::CreateEnsembleJobRequest& request) {
   if (service.draining) return ShuttingDown();
   RequestCheck check;
+  check.UnknownFields(request);
   v1::CreateEnsembleJobRequest accepted = request;
   accepted.set_request_id(check.RequestId(request.request_id()));
   check.Priority("priority", request.priority());

@@ -190,6 +190,15 @@ TEST(BadRequests, EveryBadFieldIsNamed) {
   EXPECT_EQ(server.List().jobs_size(), 0);
 }
 
+TEST(BadRequests, AFieldOfANewerClientIsRefused) {
+  RunningServer server;
+  v1::CreateEnsembleJobRequest request = CreateRequest(Equilibrium(1, 1));
+  request.GetReflection()->MutableUnknownFields(&request)->AddVarint(100, 1);
+  const grpc::Status status = server.Create(request);
+  EXPECT_EQ(ReasonOf(status), "INVALID_REQUEST");
+  EXPECT_THAT(DetailsOf(status).fields, testing::ElementsAre("request"));
+}
+
 // A few kilobytes could become a gigabyte.
 TEST(BadRequests, CompressedOnesAreUnimplemented) {
   RunningServer server;
