@@ -336,13 +336,6 @@ TEST_F(AcceptanceTest, RetriesAndStoredAnswersIgnoreALowerLimit) {
   // Another request with the same id is rejected because of the id.
   EXPECT_EQ(ReasonOf(Create(kAnn, CreateRequest(Question(3), kUuid))), "REQUEST_ID_REUSED");
   EXPECT_EQ(ReasonOf(Create(kAnn, FreshRequest(Question()))), "TOO_MANY_POINTS");
-  CheckedSpec beyond_memory = CheckSpec(Question());
-  beyond_memory.violations = {{"spec.grid.cells[0]", "needs more memory"}};
-  for (const std::string& id : {std::string(kUuid), std::string()}) {
-    EXPECT_OK(book_->Create(kAnn, CreateRequest(Question(), id), beyond_memory));
-  }
-  const auto refused = book_->Create(kAnn, FreshRequest(Question()), beyond_memory);
-  EXPECT_EQ(ReasonOf(refused), "INVALID_SPEC");
 }
 
 TEST_F(AcceptanceTest, ZeroMeansUnlimited) {
