@@ -12,6 +12,14 @@
 namespace ballpiston {
 namespace {
 
+// The samples that are expected to reach the tolerance; infinite without one.
+double SamplesExpected(const EnsembleSpec& spec, const PointParameters& point) {
+  if (!spec.target.tolerance || !TakesSamples(Sampled(spec.model))) return HUGE_VAL;
+  return ScatterOf(spec, point).SamplesFor(*spec.target.tolerance);
+}
+
+}  // namespace
+
 ChunkPlan PlanFor(const EnsembleSpec& spec, const PointParameters& point) {
   if (!TakesSamples(Sampled(spec.model))) return ChunkPlan();
   const Forecast forecast = ForecastOf(spec, point);
@@ -22,14 +30,6 @@ ChunkPlan PlanFor(const EnsembleSpec& spec, const PointParameters& point) {
   }
   return ChunkPlan(samples, EngineFor(spec), events, spec.experiment->samples_together);
 }
-
-// The samples that are expected to reach the tolerance; infinite without one.
-double SamplesExpected(const EnsembleSpec& spec, const PointParameters& point) {
-  if (!spec.target.tolerance || !TakesSamples(Sampled(spec.model))) return HUGE_VAL;
-  return ScatterOf(spec, point).SamplesFor(*spec.target.tolerance);
-}
-
-}  // namespace
 
 double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point, double samples) {
   const ChunkPlan plan = PlanFor(spec, point);

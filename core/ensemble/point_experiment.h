@@ -139,6 +139,9 @@ std::unique_ptr<PointExperiment> CreateAs(const EnsembleSpec& spec, const PointP
 // The largest number of samples that the target requests at a point; 1 to kMaxSamples.
 uint64_t SamplesAskedFor(const Target& target, const Forecast& forecast);
 
+// The samples that the point takes, by spec.model; for AUTO, by the billiard.
+ChunkPlan PlanFor(const EnsembleSpec& spec, const PointParameters& point);
+
 // The time of this many samples of the point, or of all if the target asks for fewer, on one core
 // at nominal speed, by spec.model. Requires a model that samples.
 double NominalSeconds(const EnsembleSpec& spec, const PointParameters& point, double samples);

@@ -95,7 +95,7 @@ void Continue(Database& database, Acceptance& acceptance) {
   const auto asks_for_more = [&](const v1::EnsembleJob& earlier) {
     const double samples = earlier.progress().samples();
     if (samples == 0) return false;
-    if (!target.has_tolerance()) return acceptance.samples > samples;
+    if (!target.has_tolerance()) return acceptance.samples >= samples;
     const v1::Target& before = earlier.spec().target();
     return !before.has_tolerance() || target.tolerance() < before.tolerance();
   };
@@ -120,6 +120,7 @@ std::optional<JobRecord> Accept(Database& database, const Limits& limits, Accept
     earlier->job.set_answered_from_store(!is_retry);
     return earlier;
   }
+  if (!acceptance.violations.empty()) database.Fail(InvalidSpec(acceptance.violations));
   CheckLoad(database, limits, record.job);
   CheckStoreSize(database, limits);
   if (!acceptance.fresh) Continue(database, acceptance);

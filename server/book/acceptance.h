@@ -3,13 +3,13 @@
 // A retry (the same request id with the same request) returns the original job. If the principal
 // asks the question of an earlier job that succeeded, the server returns that job unless `fresh` is
 // set or its labels do not fit the request's: a label has another value in both, or together they
-// are too many. Any other request must keep the limits: on a job's size, on active jobs and their
-// points, and on the size of the store. All this is decided inside one transaction of the store.
-// The store runs its transactions one after the other, so many equal requests at the same time make
-// one job.
+// are too many. Any other request must be one that this machine can compute, and must keep the
+// limits: on a job's size, on active jobs and their points, and on the size of the store. All this
+// is decided inside one transaction of the store. The store runs its transactions one after the
+// other, so many equal requests at the same time make one job.
 //
-// A new job continues an earlier one that SUCCEEDED in answering the same question with a smaller
-// number of samples or a larger tolerance: each point begins where that job's point ended, if the
+// A new job continues an earlier one that SUCCEEDED in answering the same question with no more
+// samples or a larger tolerance: each point begins where that job's point ended, if the
 // same model answers it. So the job computes only the difference, and its result has the bytes of
 // one long run. If that job is deleted meanwhile, the points begin anew. If another machine
 // computed a point's last chunk, the part of it that the target cut short is computed again.
@@ -19,8 +19,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ballpiston/v1/ensemble.pb.h"
+#include "core/ensemble/ensemble_spec.h"
 #include "server/limits.h"
 #include "server/store/job_record.h"
 #include "server/store/job_table.h"
@@ -31,9 +33,10 @@ namespace ballpiston::server {
 struct Acceptance {
   JobRecord record;    // the new job, with the id and the hash of its request
   bool fresh = false;  // do not return an earlier job
-  // The samples of all points for which the target asks; 0 with a tolerance, a budget, or a model
-  // without samples.
+  // The samples of all points for which the target asks, rounded up as the points' plans do; 0 with
+  // a tolerance, a budget, or a model without samples.
   double samples = 0;
+  std::vector<FieldViolation> violations;  // what this machine cannot do
 };
 
 // Returns the earlier job that answers the request. answered_from_store is true if the job answers

@@ -48,14 +48,12 @@ namespace {
 // The samples of all points together that the target asks for. Returns 0 if it names no number of
 // samples or collisions, or if the model takes no samples.
 double SamplesOfAllPoints(const EnsembleSpec& spec) {
-  const Target& target = spec.target;
-  if (target.IsOpenEnded() || NeedsNoSamples(spec)) return 0;
+  if (spec.target.IsOpenEnded() || NeedsNoSamples(spec)) return 0;
   const size_t points = PointCount(spec);
   double samples = 0;
   for (size_t i = 0; i < points; ++i) {
-    // Only a number of collisions needs the forecast.
-    const Forecast forecast = target.collisions ? ForecastOf(spec, PointAt(spec, i)) : Forecast();
-    samples += static_cast<double>(SamplesAskedFor(target, forecast));
+    const ChunkPlan plan = PlanFor(spec, PointAt(spec, i));
+    samples += static_cast<double>(plan.samples() - plan.warm_up());
   }
   return samples;
 }
@@ -84,6 +82,7 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   SetNumbers({.bytes = static_cast<int64_t>(job.spec().ByteSizeLong())}, job);
   acceptance.fresh = request.fresh();
   acceptance.samples = SamplesOfAllPoints(checked.spec);
+  acceptance.violations = checked.violations;
   return acceptance;
 }
 
@@ -151,9 +150,10 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
     }
     begun = BeginCancellation(database, record, request_id);
     Failpoint("cancel.in_transaction");
-    const bool is_replay = !request_id.empty() && record.cancel_request_id == request_id;
     const JobState state = record.job.state();
-    if (HasEnded(state) && !is_replay) {
+    // Also several cancellations that were accepted at the same time can be retried.
+    const bool is_retry = !request_id.empty() && state == v1::EnsembleJob::CANCELLED;
+    if (HasEnded(state) && !is_retry) {
       database.Fail(JobAlreadyEnded(JobName(id), v1::EnsembleJob::State_Name(state)));
     }
     return record;

@@ -85,8 +85,9 @@ class JobBook {
   // as they are.
   void Shutdown();
 
-  // `checked` is the specification of the request, without violations; the request's id is in lower
-  // case. Returns an earlier job if this is a retry, or if an earlier job has the same question.
+  // `checked` is the specification of the request. Its violations are what this machine cannot do;
+  // an earlier job is returned in spite of them. The request's id is in lower case. Returns an
+  // earlier job if this is a retry, or if an earlier job has the same question.
   absl::StatusOr<v1::EnsembleJob> Create(const Principal& caller,
                                          const v1::CreateEnsembleJobRequest& request,
                                          const CheckedSpec& checked);

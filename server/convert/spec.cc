@@ -162,16 +162,6 @@ void CheckNanos(const google::protobuf::Duration& budget, Violations& violations
       {"spec.target.budget.nanos", absl::StrCat("is ", nanos, "; permitted: 0 to ", kMost)});
 }
 
-void AddUnknownFields(const char* path, const google::protobuf::Message& message,
-                      Violations& violations) {
-  const auto& unknown = message.GetReflection()->GetUnknownFields(message);
-  for (int i = 0; i < std::min(unknown.field_count(), kMostListed); ++i) {
-    violations.push_back({path, absl::StrCat("field number ", unknown.field(i).number(),
-                                             " is not one this server knows; is it older than "
-                                             "its client?")});
-  }
-}
-
 // -0 + 0.0 is 0, and every other number stays.
 void DropSignsOfZeros(v1::EnsembleSpec& message) {
   if (message.target().has_tolerance()) {
@@ -193,6 +183,16 @@ Violations CoreViolations(const EnsembleSpec& spec) {
 }
 
 }  // namespace
+
+void AddUnknownFields(const char* path, const google::protobuf::Message& message,
+                      std::vector<FieldViolation>& violations) {
+  const auto& unknown = message.GetReflection()->GetUnknownFields(message);
+  for (int i = 0; i < std::min(unknown.field_count(), kMostListed); ++i) {
+    violations.push_back({path, absl::StrCat("field number ", unknown.field(i).number(),
+                                             " is not one this server knows; is it older than "
+                                             "its client?")});
+  }
+}
 
 CheckedSpec CheckSpec(const v1::EnsembleSpec& message) {
   CheckedSpec checked;
@@ -223,8 +223,6 @@ void AddViolations(std::vector<FieldViolation> found, CheckedSpec& checked) {
 
 void Normalize(v1::EnsembleSpec& message) {
   DropSignsOfZeros(message);
-  // The order of the names means nothing.
-  if (message.grid().table_size() > 1) std::ranges::sort(*message.mutable_grid()->mutable_table());
   for (std::string& cells : *message.mutable_grid()->mutable_cells()) {  // 03x2 is 3x2
     if (const auto shape = ParseGasShape(cells); shape.ok()) cells = Text(*shape);
   }
@@ -277,6 +275,8 @@ v1::EnsembleSpec::Model ModelMessage(Model model) {
 }
 
 std::string QuestionBytes(v1::EnsembleSpec message) {
+  // The order of the names means nothing.
+  if (message.grid().table_size() > 1) std::ranges::sort(*message.mutable_grid()->mutable_table());
   if (message.model() == v1::EnsembleSpec::AUTO) message.clear_model();
   if (message.precision() == v1::EnsembleSpec::DOUBLE) message.clear_precision();
   v1::Target& target = *message.mutable_target();

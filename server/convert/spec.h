@@ -20,11 +20,15 @@ struct CheckedSpec {
 // version does not know is a violation, because it might change the answer.
 CheckedSpec CheckSpec(const v1::EnsembleSpec& message);
 
+// Adds a violation of `path` for each field that this version does not know, at most 100.
+void AddUnknownFields(const char* path, const google::protobuf::Message& message,
+                      std::vector<FieldViolation>& violations);
+
 // Adds violations that were found in checked.spec.
 void AddViolations(std::vector<FieldViolation> found, CheckedSpec& checked);
 
-// Makes equal questions equal messages: writes the experiment's default values into empty lists of
-// the grid, 0 for -0, and the names of a table's columns in order.
+// Gives equal questions equal lists: writes the experiment's default values into empty lists of the
+// grid, 0 for -0, and shapes in one form.
 void Normalize(v1::EnsembleSpec& message);
 
 // Parses the name of a shape. INVALID_ARGUMENT quotes at most the beginning of the text.
@@ -36,7 +40,8 @@ v1::PointParameters ParametersMessage(const PointParameters& parameters);
 PointParameters ParametersOf(const v1::PointParameters& message);
 v1::EnsembleSpec::Model ModelMessage(Model model);
 
-// The same bytes for the same question: default values are left out.
+// The same bytes for the same question: default values are left out, and the names of a table's
+// columns are sorted.
 std::string QuestionBytes(v1::EnsembleSpec message);
 
 }  // namespace ballpiston::server

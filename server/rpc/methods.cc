@@ -34,15 +34,16 @@ absl::StatusOr<v1::EnsembleJob> CreateEnsembleJob(ServiceContext& service, const
                                                   const v1::CreateEnsembleJobRequest& request) {
   if (service.draining) return ShuttingDown();
   RequestCheck check;
+  check.UnknownFields(request);
   v1::CreateEnsembleJobRequest accepted = request;
   accepted.set_request_id(check.RequestId(request.request_id()));
   check.Priority("priority", request.priority());
   check.LabelsIn("labels", request.labels());
   Normalize(*accepted.mutable_spec());
   CheckedSpec spec = CheckSpec(accepted.spec());
-  if (spec.violations.empty()) AddViolations(service.ladder.ViolationsHere(spec.spec), spec);
-  const absl::Status checked = Check(spec, check);
-  if (!checked.ok()) return checked;
+  const bool is_valid = spec.violations.empty();
+  if (is_valid) AddViolations(service.ladder.ViolationsHere(spec.spec), spec);
+  if (!is_valid || !check.ok()) return Check(spec, check);
   absl::StatusOr<v1::EnsembleJob> job = service.book.Create(call.caller, accepted, spec);
   if (job.ok()) LogAcceptance(call, *job);
   return job;

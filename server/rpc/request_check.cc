@@ -17,7 +17,7 @@ constexpr int kDefaultPageSize = 50;
 constexpr int kMaxPageSize = 1000;
 
 // A request of 4 MiB can hold four million wrong values.
-constexpr int kMaxViolationsOfList = 100;
+constexpr size_t kMaxViolationsOfList = 100;
 
 constexpr int64_t kFirstSecond = -62'135'596'800;  // 0001-01-01T00:00:00Z
 constexpr int64_t kLastSecond = 253'402'300'799;   // 9999-12-31T23:59:59Z
@@ -138,7 +138,7 @@ JobChange RequestCheck::Change(const v1::UpdateEnsembleJobRequest& request) {
     } else {
       Add("update_mask", absl::StrCat("has ", Quoted(path), kPermitted));
     }
-    if (!ok()) break;
+    if (violations_.size() >= kMaxViolationsOfList) break;
   }
   return change;
 }
@@ -150,7 +150,7 @@ std::set<Enum> RequestCheck::Values(const char* field,
                                     const google::protobuf::RepeatedField<int>& list) {
   const google::protobuf::EnumDescriptor& type = *google::protobuf::GetEnumDescriptor<Enum>();
   std::set<Enum> values;
-  int violations = 0;
+  size_t violations = 0;
   for (int i = 0; i < list.size() && violations < kMaxViolationsOfList; ++i) {
     const int value = list[i];
     if (value != 0 && type.FindValueByNumber(value) != nullptr) {

@@ -21,6 +21,7 @@
 #include "server/book/job_list.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/errors.h"
+#include "server/convert/spec.h"
 #include "server/sha256.h"
 
 namespace ballpiston::server {
@@ -100,6 +101,10 @@ class RequestCheck {
   void View(const Request& request) {
     if (Request::View_IsValid(request.view())) return;
     Add("view", absl::StrCat(int{request.view()}, " is not a view this server knows"));
+  }
+
+  void UnknownFields(const google::protobuf::Message& request) {
+    AddUnknownFields("request", request, violations_);
   }
 
   void Add(std::string field, std::string description);

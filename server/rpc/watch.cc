@@ -140,12 +140,10 @@ class Watch {
     if (!told.ok() || *told) return told;
     absl::StatusOr<v1::EnsembleJob> job = book_.Get(reader_.caller(), id_, Grid::kLeftOut);
     if (!job.ok()) return job.status();
-    // The watch of a job whose results had expired before has no points.
-    const bool has_points = told_finished_ > 0 || !job_.record.job.results_expired();
-    const bool is_complete = told_finished_ == job->progress().points_done();
-    if (job->results_expired() && has_points && !is_complete) {
-      return ResultsExpired(request_.name());
-    }
+    const int64_t done = job->progress().points_done();
+    // A new watch of a job whose results had expired before has no points.
+    if (!resumes_ && job_.record.job.results_expired()) told_finished_ = done;
+    if (job->results_expired() && told_finished_ < done) return ResultsExpired(request_.name());
     *message_.mutable_job() = *std::move(job);
     has_told_end_ = true;
     return Write();
@@ -226,6 +224,7 @@ class Watch {
         told->finished() < 0 || told->finished() > job_.last_finished()) {
       return;
     }
+    resumes_ = true;
     told_finished_ = told->finished();
     const bool of_this_life = job_.active != nullptr && told->instance() == instance_;
     if (of_this_life && told->change() <= job_.active->last_change()) told_ = told->change();
@@ -240,6 +239,7 @@ class Watch {
 
   std::string id_;
   FoundJob job_;
+  bool resumes_ = false;  // an earlier watch
   std::string told_progress_;
   JobState told_as_ = v1::EnsembleJob::STATE_UNSPECIFIED;  // the last state that was sent
   bool has_told_end_ = false;

@@ -9,7 +9,8 @@
 // Properties of a watch and of the watches that resume it (checked in tests/simulation):
 //   1. Each finished point is sent once, in order: also over restarts, and before the terminal
 //      state.
-//   2. A state never goes back. Progress never goes back within one watch.
+//   2. A state never goes back. Progress never goes back within one watch, except that the samples
+//      of a point's warm-up no longer count when the point is finished.
 //   3. The terminal state is sent once, last, and then OK. So the watch of a job that has ended
 //      begins with the finished points that were not sent yet.
 //

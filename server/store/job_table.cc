@@ -218,9 +218,7 @@ std::optional<JobRecord> EndJob(Database& database, int64_t sequence, const JobE
   job.set_state(is_cancelled ? v1::EnsembleJob::CANCELLED : end.state);
   SetTime(end.time, job.mutable_end_time());
   if (job.state() == v1::EnsembleJob::FAILED) *job.mutable_error() = end.error;
-  JobNumbers stored = end.numbers;
-  stored.points_computed = static_cast<double>(stored.points_done);
-  SetNumbers(stored, job);
+  SetNumbers(end.numbers, job);
   UpdateJob(database, *record);
   DropCheckpoints(database, sequence);
   return record;

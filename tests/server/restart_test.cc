@@ -33,6 +33,23 @@ TEST(Restart, TheSameBytesAtOneTwoAndEightWorkers) {
   }
 }
 
+TEST(Restart, WithLessMemoryOnlyNewJobsAreRefused) {
+  const auto gas = FromText<v1::EnsembleSpec>(
+      "experiment: GAS_EQUILIBRIUM grid { rho: 0.53 delta: 0.1 cells: '1000' } "
+      "target { samples: 10 } model: BILLIARD");
+  TemporaryFolder folder;
+  TestServerOptions options = InFolder(folder);
+  std::optional<RunningServer> server(options);
+  const std::string name = server->Created(CreateRequest(gas, kUuid)).name();
+  server->AwaitEnd(name);
+  server.reset();
+  options.limits.max_memory_mib = 1;
+  server.emplace(options);
+  EXPECT_EQ(server->Created(CreateRequest(gas, kUuid)).name(), name);  // a retry
+  EXPECT_EQ(server->Created(CreateRequest(gas)).name(), name);         // a stored answer
+  EXPECT_EQ(ReasonOf(server->Create(FreshRequest(gas))), "INVALID_SPEC");
+}
+
 void Change(const TemporaryFolder& folder, const std::string& sql) {
   ChangeStore(folder.File("store.sqlite3"), sql);
 }

@@ -209,8 +209,8 @@ class Job:
                 return Result(self.message, points)
 
     def cancel(self) -> Job:
-        """Stops the job. Its finished points stay. Raises FailedPrecondition: it has already ended
-        (reason JOB_ALREADY_ENDED)."""
+        """Stops the job. Its finished points stay. Raises FailedPrecondition: it has already
+        succeeded or failed (reason JOB_ALREADY_ENDED)."""
         key = str(uuid.uuid4())
         request = ensemble_pb2.CancelEnsembleJobRequest(name=self.name, request_id=key)
         self.message = self._call(request)

@@ -188,12 +188,14 @@ TEST(Question, TheDefaultEstimateMayBeNamedOrLeftOut) {
   EXPECT_NE(question_of("exchange_rate"), question_of(""));
 }
 
-TEST(Question, DefaultValuesMayBeNamedOrLeftOut) {
+TEST(Question, DefaultValuesMayBeNamedOrLeftOutAndColumnsHaveNoOrder) {
   v1::EnsembleSpec named = Question();
   named.set_model(v1::EnsembleSpec::AUTO);
   named.set_precision(v1::EnsembleSpec::DOUBLE);
   named.mutable_target()->set_samples(kDefaultSamples);
+  for (const char* column : {"rho", "delta"}) named.mutable_grid()->add_table(column);
   v1::EnsembleSpec left_out = named;
+  left_out.mutable_grid()->mutable_table()->SwapElements(0, 1);
   left_out.clear_model();
   left_out.clear_precision();
   left_out.clear_target();

@@ -18,6 +18,13 @@ v1::EnsembleSpec WithTolerance(double tolerance) {
   return FirstHits(absl::StrCat("target { tolerance: ", tolerance, " }"));
 }
 
+v1::EnsembleSpec Conduction(int64_t samples) {
+  return FromText<v1::EnsembleSpec>(absl::StrCat(
+      "experiment: GAS_CONDUCTION model: MARKOV grid { rho: 0.53 delta: 0.1 cells: '2' "
+      "hot: 2 cold: 1 } target { samples: ",
+      samples, " }"));
+}
+
 TEST(Family, IsTheQuestionWithoutItsTargetButWithItsEstimate) {
   const std::string family = FamilyOf(FirstHits(), "1");
   EXPECT_EQ(FamilyOf(WithSamples(7), "1"), family);
@@ -47,6 +54,8 @@ TEST_F(ContinuationTest, AContinuedJobHasTheBytesOfOneLongRun) {
   const std::pair<v1::EnsembleSpec, v1::EnsembleSpec> rows[] = {
       {WithSamples(1'000), WithSamples(30'000)},
       {WithTolerance(0.05), WithTolerance(0.01)},
+      // Both have 128 samples, one of each trajectory.
+      {Conduction(90), Conduction(100)},
       // A run with this tolerance would have ended long before the samples of the earlier job.
       {WithSamples(50'000), WithTolerance(0.1)}};
   for (const auto& [earlier, later] : rows) {

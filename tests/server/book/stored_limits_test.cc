@@ -1,4 +1,5 @@
 // How long results are kept. The test sets the time.
+#include "server/rpc/request_check.h"
 #include "server/rpc/watch.h"
 #include "server/store/check_store.h"
 #include "server/store/sweeper.h"
@@ -138,6 +139,10 @@ TEST_F(StoredLimitsTest, AWatchOfExpiredResultsHasNoPartOfThem) {
     EXPECT_TRUE(end.back().job().results_expired());
   }
   EXPECT_EQ(ReasonOf(Watched(id, whole[0].resume_token()).status()), "RESULTS_EXPIRED");
+  // The watch of an active job has received the job only, and no points.
+  auto token = *ParseToken<storage::ResumeToken>(whole[0].resume_token());
+  token.set_finished(0);
+  EXPECT_EQ(ReasonOf(Watched(id, TokenText(token)).status()), "RESULTS_EXPIRED");
 }
 
 // The sweeper has removed some of the rows that the watch has not read yet.

@@ -65,6 +65,7 @@ std::vector<BadRequest> BadRequests() {
             "}"),
        {"spec.grid.table[0]", kAndMore},
        "(and 100 more)"},
+      {create, with("grid { table: ['x', 'delta'] }"), {"spec.grid.table[0]"}},
       {create, hit + "request_id: 'not a uuid'", {"request_id"}},
       {create, hit + "priority: 101", {"priority"}, "-100 to 100"},
       {create, hit + "priority: -101", {"priority"}, "-100 to 100"},
@@ -78,7 +79,10 @@ std::vector<BadRequest> BadRequests() {
       {update, job + "job { priority: 101 } update_mask { paths: 'priority' }", {"job.priority"}},
       {update, job, {"update_mask"}, mask},
       {update, job + "update_mask { paths: '*' }", {"update_mask"}, mask},
-      {update, job + "update_mask { paths: ['pinned', 'state'] }", {"update_mask"}, mask},
+      {update,
+       job + "job { priority: 101 } update_mask { paths: ['pinned', 'state', 'priority'] }",
+       {"update_mask", "job.priority"},
+       mask},
       {update, job + "update_mask { paths: 'job.pinned' }", {"update_mask"}, mask},
       {list, "page_size: -1", {"page_size"}},
       {list, "page_token: '!!!'", {"page_token"}},
@@ -187,6 +191,15 @@ TEST(BadRequests, EveryBadFieldIsNamed) {
     }
   }
   EXPECT_EQ(server.List().jobs_size(), 0);
+}
+
+TEST(BadRequests, AFieldOfANewerClientIsRefused) {
+  RunningServer server;
+  v1::CreateEnsembleJobRequest request = CreateRequest(Equilibrium(1, 1));
+  request.GetReflection()->MutableUnknownFields(&request)->AddVarint(100, 1);
+  const grpc::Status status = server.Create(request);
+  EXPECT_EQ(ReasonOf(status), "INVALID_REQUEST");
+  EXPECT_THAT(DetailsOf(status).fields, testing::ElementsAre("request"));
 }
 
 // A few kilobytes could become a gigabyte.
