@@ -19,13 +19,14 @@ from ballpiston._version import __version__
 from ballpiston.client import Client, ServerStatus, connect
 from ballpiston.closed_forms import ClosedForms
 from ballpiston.collisions import Collisions
+from ballpiston.curve import Curve
 from ballpiston.errors import (
     DataLoss, DeadlineExceeded, Error, FailedPrecondition, InvalidArgument, InvalidSpecification,
     NoPrivateServer, NotFound, PermissionDenied, ResourceExhausted, ResultsExpired, Unauthenticated,
     Unavailable,
 )
 from ballpiston.estimates_table import estimates_table
-from ballpiston.histogram import Curve, Histogram
+from ballpiston.histogram import Histogram
 from ballpiston.job import Job, JobCancelled, JobFailed, JobNotSucceeded
 from ballpiston.plan import Plan
 from ballpiston.point import Estimate, Point

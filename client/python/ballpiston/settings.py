@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ballpiston.channel import ChannelSecurity
+from ballpiston.channel_security import ChannelSecurity
 from ballpiston.server_address import is_socket
 
 _KEYS = {"address": "server", "ca": "ca", "tls": "tls", "token_file": "token-file"}
