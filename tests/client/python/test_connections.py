@@ -18,7 +18,7 @@ from ballpiston._google_rpc import error_details_pb2, status_pb2
 from ballpiston.call_token import Token
 from ballpiston.channel_security import ChannelSecurity, check_security
 from ballpiston.connection_hint import connection_hint
-from ballpiston.error_details import details_of, error_of
+from ballpiston.error_details import Details, details_of, error_of
 from ballpiston.private_server import find_private_server
 from ballpiston.server_address import grpc_target, literal_address
 from ballpiston.settings import address_and_security
@@ -117,6 +117,11 @@ def test_an_error_says_how_long_to_wait() -> None:
     assert (details.reason, details.retry_delay) == ("TOO_MANY_JOBS", 1.5)
     assert error_of(ballpiston.ResourceExhausted, "", details, "").retry_delay == 1.5
     assert details_of(status_pb2.Status()).retry_delay == 0
+
+
+def test_violations_that_are_left_out_are_counted_if_their_number_is_one() -> None:
+    for stated, text in (("2", "not valid, 2 violations:\n  and 2 more"), ("many", "wrong")):
+        assert Details(metadata={"violations_left_out": stated}).text("wrong") == text
 
 
 @pytest.mark.parametrize("text", ["", "two words", "x" * 257, "ä"])
