@@ -21,19 +21,21 @@ def whole_file(path: Path) -> Iterator[Path]:
     if path.exists() and not path.is_file():
         yield path
         return
-    path = path.resolve()  # symbolic links stay
+    target = path.resolve()  # symbolic links stay
     umask = os.umask(0o077)
     os.umask(umask)
-    mode = path.stat().st_mode if path.exists() else 0o666 & ~umask
-    descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    os.close(descriptor)
-    temporary = Path(name)
     try:
-        yield temporary
-        temporary.chmod(stat.S_IMODE(mode))  # mkstemp's files are private
-        temporary.replace(path)
-    except BaseException as error:
-        temporary.unlink(missing_ok=True)
-        if isinstance(error, OSError) and error.strerror:  # that of a write names no file
+        mode = target.stat().st_mode if target.exists() else 0o666 & ~umask
+        descriptor, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+        os.close(descriptor)
+        temporary = Path(name)
+        try:
+            yield temporary
+            temporary.chmod(stat.S_IMODE(mode))  # mkstemp's files are private
+            temporary.replace(target)
+        finally:
+            temporary.unlink(missing_ok=True)
+    except OSError as error:
+        if error.strerror:  # that of a write names no file, others the temporary one
             error.filename = str(path)
         raise

@@ -216,6 +216,11 @@ def test_links_permissions_and_pipes_stay(tmp_path: Path) -> None:
     os.close(reader)
 
 
+def test_a_file_that_cannot_be_made_is_named_as_the_caller_names_it() -> None:
+    with pytest.raises(FileNotFoundError, match="'missing/x.json'$"):
+        write_atomically(Path("missing/x.json"), b"text")
+
+
 def test_a_result_of_an_unfinished_job_has_its_finished_points(
     client: ballpiston.Client, endless: ballpiston.Job, tmp_path: Path
 ) -> None:
