@@ -14,18 +14,28 @@ answer has.
 The messages and stubs of the protocol are in ballpiston.v1.
 """
 
-# fmt: off
 from ballpiston._version import __version__
 from ballpiston.client import Client, ServerStatus, connect
 from ballpiston.closed_forms import ClosedForms
 from ballpiston.collisions import Collisions
+from ballpiston.curve import Curve
 from ballpiston.errors import (
-    DataLoss, DeadlineExceeded, Error, FailedPrecondition, InvalidArgument, InvalidSpecification,
-    NoPrivateServer, NotFound, PermissionDenied, ResourceExhausted, ResultsExpired, Unauthenticated,
+    DataLoss,
+    DeadlineExceeded,
+    Error,
+    FailedPrecondition,
+    InvalidArgument,
+    InvalidSpecification,
+    NoPrivateServer,
+    NotFound,
+    PermissionDenied,
+    ResourceExhausted,
+    ResultsExpired,
+    Unauthenticated,
     Unavailable,
 )
 from ballpiston.estimates_table import estimates_table
-from ballpiston.histogram import Curve, Histogram
+from ballpiston.histogram import Histogram
 from ballpiston.job import Job, JobCancelled, JobFailed, JobNotSucceeded
 from ballpiston.plan import Plan
 from ballpiston.point import Estimate, Point
@@ -34,10 +44,37 @@ from ballpiston.specification import specification
 from ballpiston.watch import Update
 
 __all__ = [
-    "Client", "ClosedForms", "Collisions", "Curve", "DataLoss", "DeadlineExceeded", "Error",
-    "Estimate", "FailedPrecondition", "Histogram", "InvalidArgument", "InvalidSpecification", "Job",
-    "JobCancelled", "JobFailed", "JobNotSucceeded", "NoPrivateServer", "NotFound",
-    "PermissionDenied", "Plan", "Point", "ResourceExhausted", "Result", "ResultsExpired",
-    "ServerStatus", "Unauthenticated", "Unavailable", "Update", "__version__", "connect",
-    "estimates_table", "load", "specification",
+    "Client",
+    "ClosedForms",
+    "Collisions",
+    "Curve",
+    "DataLoss",
+    "DeadlineExceeded",
+    "Error",
+    "Estimate",
+    "FailedPrecondition",
+    "Histogram",
+    "InvalidArgument",
+    "InvalidSpecification",
+    "Job",
+    "JobCancelled",
+    "JobFailed",
+    "JobNotSucceeded",
+    "NoPrivateServer",
+    "NotFound",
+    "PermissionDenied",
+    "Plan",
+    "Point",
+    "ResourceExhausted",
+    "Result",
+    "ResultsExpired",
+    "ServerStatus",
+    "Unauthenticated",
+    "Unavailable",
+    "Update",
+    "__version__",
+    "connect",
+    "estimates_table",
+    "load",
+    "specification",
 ]

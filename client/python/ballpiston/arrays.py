@@ -30,8 +30,9 @@ import numpy.typing as npt
 
 from ballpiston._version import __version__
 from ballpiston.document import json_of
-from ballpiston.fields import FloatArray, column, spelled, value_of
+from ballpiston.fields import FloatArray, column, value_of
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS, parameters_of
+from ballpiston.spelling import spelled
 
 Arrays = dict[str, npt.NDArray[Any]]
 
@@ -127,7 +128,9 @@ def _curves(points: Sequence[Any]) -> dict[str, FloatArray]:
     arrays = {}
     for name, found in by_name(points, "curves").items():
         for field in ("time", "position", "value", "standard_error", "batches", "limit"):
-            rows = [[value_of(at, field) for c in of_point for at in c.points] for of_point in found]
+            rows = [
+                [value_of(at, field) for c in of_point for at in c.points] for of_point in found
+            ]
             arrays[f"curve_{name}_{field}"] = _padded(rows, 2)
     return arrays
 

@@ -11,18 +11,20 @@ from typing import Any
 import numpy.typing as npt
 
 from ballpiston.closed_forms import ClosedForms
-from ballpiston.collisions import Collisions, columns_of, events_of
+from ballpiston.collisions import Collisions
 from ballpiston.connection import Connection
-from ballpiston.fields import from_spelling, record_of, shown, spelled
+from ballpiston.fields import record_of, shown
 from ballpiston.job import Job, check_labels
+from ballpiston.orbit import columns_of, events_of
 from ballpiston.parameter_lists import INT64, UINT64, Numbers, Shapes, number_list
 from ballpiston.parameter_lists import real_number, shape_list, truth_value, whole_number
 from ballpiston.plan import Plan
+from ballpiston.private_server import find_private_server
 from ballpiston.progress import progress_on_screen
 from ballpiston.result import Result
-from ballpiston.server_address import find_private_server
 from ballpiston.settings import address_and_security
 from ballpiston.specification import question_of, specification, takes_keywords_of
+from ballpiston.spelling import from_spelling, spelled
 from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trace_pb2
 
 _COLLECTION = "ensembleJobs/"

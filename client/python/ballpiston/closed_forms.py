@@ -4,7 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from ballpiston.fields import FloatArray, column, frame_of, no_such
+from ballpiston.fields import FloatArray, column
+from ballpiston.suggestion import no_such
+from ballpiston.table import frame_of
 from ballpiston.v1 import analytic_pb2
 
 

@@ -17,9 +17,9 @@ from pathlib import Path
 
 from ballpiston import errors
 from ballpiston.client import connect
-from ballpiston.document import npz_of, write_table
 from ballpiston.estimates_table import estimates_table
 from ballpiston.result import load
+from ballpiston.table import npz_of, write_table
 
 # The exit codes of the program ballpiston; the first class that an error belongs to counts.
 _EXIT_CODES: list[tuple[type[BaseException], int]] = [

@@ -17,10 +17,14 @@ from typing import Any
 
 import grpc
 
-from ballpiston.channel import ChannelSecurity, Token, connection_hint, open_channel
+from ballpiston.call_token import Token
+from ballpiston.channel import open_channel
+from ballpiston.channel_security import ChannelSecurity
+from ballpiston.connection_hint import connection_hint
 from ballpiston.error_details import from_rpc_error
 from ballpiston.errors import Error, Unavailable
-from ballpiston.server_address import PrivateServer, literal_address
+from ballpiston.private_server import PrivateServer
+from ballpiston.server_address import literal_address
 from ballpiston.v1.analytic_pb2_grpc import AnalyticServiceStub
 from ballpiston.v1.ensemble_pb2_grpc import EnsembleServiceStub
 from ballpiston.v1.server_pb2_grpc import ServerServiceStub

@@ -28,7 +28,8 @@ class Details:
     def text(self, message: str) -> str:
         """MESSAGE (REASON), or FIELD: DESCRIPTION (REASON), or a line for each violation."""
         reason = f" ({self.reason})" if self.reason else ""
-        left_out = int(self.metadata.get("violations_left_out", 0))
+        stated = self.metadata.get("violations_left_out", "")
+        left_out = int(stated) if stated.isdecimal() else 0
         count = len(self.violations) + left_out
         if count == 0:
             return message + reason

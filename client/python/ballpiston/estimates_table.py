@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from ballpiston.document import Table
 from ballpiston.errors import NotFound, ResultsExpired
 from ballpiston.job import Job
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
+from ballpiston.table import Table
 from ballpiston.v1 import ensemble_pb2
 from ballpiston.watch import has_ended
 

@@ -15,11 +15,12 @@ from typing import Any, cast
 from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
 from ballpiston.errors import Error, NotFound, ResultsExpired
-from ballpiston.fields import shown, spelled, value_of
+from ballpiston.fields import shown, value_of
 from ballpiston.progress import fraction_of, progress_on_screen
 from ballpiston.result import Result
 from ballpiston.result_table import html_table
 from ballpiston.specification import set_target
+from ballpiston.spelling import spelled
 from ballpiston.v1 import ensemble_pb2, spec_pb2
 from ballpiston.watch import Update, has_ended, watch_job, watch_updates
 

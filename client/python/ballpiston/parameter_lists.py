@@ -22,8 +22,8 @@ from typing import Any, Union
 import numpy as np
 import numpy.typing as npt
 
-from ballpiston.fields import did_you_mean
 from ballpiston.point import PARAMETERS
+from ballpiston.suggestion import did_you_mean
 
 Numbers = Union[float, str, Iterable[float], "npt.NDArray[np.floating]"]
 Shapes = Union[int, str, Iterable[Union[int, str]]]

@@ -2,8 +2,10 @@
 
 from typing import Any
 
-from ballpiston.fields import frame_of, shown, spelled, value_of
+from ballpiston.fields import shown, value_of
 from ballpiston.result_table import html_table
+from ballpiston.spelling import spelled
+from ballpiston.table import frame_of
 
 _MOST_ROWS = 25
 

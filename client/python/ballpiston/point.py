@@ -6,9 +6,11 @@ import math
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ballpiston.fields import did_you_mean, shown, spelled, value_of
-from ballpiston.histogram import Curve, choose_curve, curve_of
+from ballpiston.curve import Curve, choose_curve, curve_of
+from ballpiston.fields import shown, value_of
 from ballpiston.histogram import Histogram, choose_histogram, histograms_of
+from ballpiston.spelling import spelled
+from ballpiston.suggestion import did_you_mean
 
 _SMALLEST, _LARGEST = 1e-4, 1e7  # outside these a number has an exponent
 _ROUNDING = 5e-13  # an error below this share of the value is that of rounding

@@ -10,11 +10,15 @@ from pathlib import Path
 from typing import Any, overload
 
 from ballpiston.arrays import Arrays, arrays_of, by_name, only, parameter_arrays
-from ballpiston.document import document_of, read_document, write_atomically, write_table
-from ballpiston.fields import FloatArray, column, frame_of, shown, spelled
-from ballpiston.histogram import Curve, Histogram
+from ballpiston.curve import Curve
+from ballpiston.document import document_of, read_document
+from ballpiston.fields import FloatArray, column, shown
+from ballpiston.histogram import Histogram
 from ballpiston.point import Point, unknown_estimate
 from ballpiston.result_table import result_html, result_text
+from ballpiston.spelling import spelled
+from ballpiston.table import frame_of, write_table
+from ballpiston.whole_file import write_atomically
 
 
 class Result:

@@ -1,13 +1,5 @@
 """Which server, and how: the argument of `connect`, else the environment variable, else the config
-file of the command line, ~/.config/ballpiston/config.toml.
-
-    argument      variable                 key in the config file
-    address       BALLPISTON_SERVER        server
-    ca            BALLPISTON_CA            ca
-    tls           BALLPISTON_TLS           tls
-    token_file    BALLPISTON_TOKEN_FILE    token-file
-                  BALLPISTON_TOKEN
-"""
+file of the command line, ~/.config/ballpiston/config.toml."""
 
 import os
 import tomllib
@@ -15,14 +7,17 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ballpiston.channel import ChannelSecurity
+from ballpiston.channel_security import ChannelSecurity
 from ballpiston.server_address import is_socket
 
-_KEYS = {"address": "server", "ca": "ca", "tls": "tls", "token_file": "token-file"}
-_VARIABLES = {
-    name: "BALLPISTON_" + key.upper().replace("-", "_")
-    for name, key in (_KEYS | {"token": "token"}).items()
-}
+# The argument, the variable, and the key in the config file.
+_SETTINGS = (
+    ("address", "BALLPISTON_SERVER", "server"),
+    ("ca", "BALLPISTON_CA", "ca"),
+    ("tls", "BALLPISTON_TLS", "tls"),
+    ("token_file", "BALLPISTON_TOKEN_FILE", "token-file"),
+    ("token", "BALLPISTON_TOKEN", ""),
+)
 _TRUE = ("1", "true", "yes", "on", "enable")
 _FALSE = ("", "0", "false", "no", "off", "disable")
 
@@ -50,7 +45,7 @@ def address_and_security(given: Mapping[str, Any]) -> tuple[str, ChannelSecurity
 
 
 def _environment() -> dict[str, str]:
-    values = {name: os.environ.get(variable, "") for name, variable in _VARIABLES.items()}
+    values = {name: os.environ.get(variable, "") for name, variable, _ in _SETTINGS}
     return {name: value for name, value in values.items() if value}
 
 
@@ -62,7 +57,7 @@ def _config_file() -> dict[str, Any]:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise ValueError(f"the config file {path} cannot be used: {error}") from error
-    return {name: content[key] for name, key in _KEYS.items() if content.get(key)}
+    return {name: content[key] for name, _, key in _SETTINGS if content.get(key)}
 
 
 def _config_path() -> Path | None:

@@ -12,10 +12,11 @@ from typing import Any, TypeVar
 
 from google.protobuf import json_format
 
-from ballpiston.fields import did_you_mean, from_spelling
 from ballpiston.parameter_lists import INT64, UINT64, Numbers, Points, Shapes, add_points
 from ballpiston.parameter_lists import number_list, real_number, shape_list, truth_value
 from ballpiston.parameter_lists import whole_number
+from ballpiston.spelling import from_spelling
+from ballpiston.suggestion import did_you_mean
 from ballpiston.v1 import spec_pb2
 
 

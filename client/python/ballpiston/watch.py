@@ -22,9 +22,9 @@ import grpc.aio
 from ballpiston.channel import open_channel
 from ballpiston.connection import Connection
 from ballpiston.errors import Error, Unavailable
-from ballpiston.fields import spelled
 from ballpiston.point import Point
 from ballpiston.progress import Progress, fraction_of, progress_in
+from ballpiston.spelling import spelled
 from ballpiston.v1 import ensemble_pb2, ensemble_pb2_grpc
 
 _LONGEST_CONNECTING = 1.0  # seconds

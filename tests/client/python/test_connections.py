@@ -15,9 +15,12 @@ from conftest import LIMIT, Home, wait_until
 
 import ballpiston
 from ballpiston._google_rpc import error_details_pb2, status_pb2
-from ballpiston.channel import ChannelSecurity, Token, check, connection_hint
-from ballpiston.error_details import details_of, error_of
-from ballpiston.server_address import find_private_server, grpc_target, literal_address
+from ballpiston.call_token import Token
+from ballpiston.channel_security import ChannelSecurity, check_security
+from ballpiston.connection_hint import connection_hint
+from ballpiston.error_details import Details, details_of, error_of
+from ballpiston.private_server import find_private_server
+from ballpiston.server_address import grpc_target, literal_address
 from ballpiston.settings import address_and_security
 
 
@@ -57,10 +60,10 @@ def test_a_socket_path_has_at_most_100_bytes() -> None:
 def test_a_token_needs_tls_or_a_loopback_address() -> None:
     for address in ("host:1", "192.168.0.7:1", "localhost.host:1"):
         with pytest.raises(ValueError, match="use TLS"):
-            check(ChannelSecurity(token="secret"), address)
-        check(ChannelSecurity(token="secret", tls=True), address)
+            check_security(ChannelSecurity(token="secret"), address)
+        check_security(ChannelSecurity(token="secret", tls=True), address)
     for address in ("127.0.0.1:1", "[::1]:1", literal_address("localhost:1")):
-        check(ChannelSecurity(token="secret"), address)
+        check_security(ChannelSecurity(token="secret"), address)
 
 
 def test_a_socket_needs_neither_tls_nor_token() -> None:
@@ -114,6 +117,11 @@ def test_an_error_says_how_long_to_wait() -> None:
     assert (details.reason, details.retry_delay) == ("TOO_MANY_JOBS", 1.5)
     assert error_of(ballpiston.ResourceExhausted, "", details, "").retry_delay == 1.5
     assert details_of(status_pb2.Status()).retry_delay == 0
+
+
+def test_violations_that_are_left_out_are_counted_if_their_number_is_one() -> None:
+    for stated, text in (("2", "not valid, 2 violations:\n  and 2 more"), ("many", "wrong")):
+        assert Details(metadata={"violations_left_out": stated}).text("wrong") == text
 
 
 @pytest.mark.parametrize("text", ["", "two words", "x" * 257, "ä"])
@@ -181,7 +189,7 @@ def test_no_program_and_no_server_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("BALLPISTON_PROGRAM")
-    monkeypatch.setattr("ballpiston.server_address._program_beside_package", lambda: None)
+    monkeypatch.setattr("ballpiston.private_server._program_beside_package", lambda: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(ballpiston.NoPrivateServer, match="install the package ballpiston"):
         find_private_server()

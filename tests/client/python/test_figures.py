@@ -26,7 +26,7 @@ from ballpiston.figures import (
     stability,
 )
 from ballpiston.figures.parts import command, oscillation, style, tables
-from ballpiston.document import write_table
+from ballpiston.table import write_table
 
 REFERENCE = json.loads(
     Path(__file__).with_name("figures_reference.json").read_text(encoding="utf-8")

@@ -14,7 +14,7 @@ from conftest import FIRST_HITS, LIMIT, Home
 from google.protobuf import json_format
 
 import ballpiston
-from ballpiston.document import write_atomically
+from ballpiston.whole_file import write_atomically
 
 
 def test_a_result_is_equal_after_it_was_saved_and_loaded(
@@ -84,7 +84,7 @@ def test_a_full_disk_is_an_error_that_names_the_file(
         "import resource, sys, numpy\n"
         "from pathlib import Path\n"
         "from ballpiston.command import run_program\n"
-        "from ballpiston.document import write_table\n"
+        "from ballpiston.table import write_table\n"
         "table = {'n': numpy.random.default_rng(1).random(1000)}\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))\n"
         "sys.exit(run_program(lambda words: write_table(Path(words[0]), table), sys.argv[1:]))"
@@ -222,6 +222,11 @@ def test_links_permissions_and_pipes_stay(tmp_path: Path) -> None:
     write_atomically(pipe, b"text")
     assert os.read(reader, 9) == b"text" and sorted(tmp_path.iterdir()) == [link, pipe, target]
     os.close(reader)
+
+
+def test_a_file_that_cannot_be_made_is_named_as_the_caller_names_it() -> None:
+    with pytest.raises(FileNotFoundError, match="'missing/x.json'$"):
+        write_atomically(Path("missing/x.json"), b"text")
 
 
 def test_a_result_of_an_unfinished_job_has_its_finished_points(

@@ -17,13 +17,14 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 import ballpiston
-from ballpiston.document import write_atomically, write_table
+from ballpiston.command import run_program
 from ballpiston.figures import names
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.tables import Tables
 from ballpiston.parameter_lists import INT64, UINT64, number_list, whole_number
-from ballpiston.command import run_program
-from ballpiston.fields import did_you_mean
+from ballpiston.suggestion import did_you_mean
+from ballpiston.table import write_table
+from ballpiston.whole_file import write_atomically
 
 # What --help says about the keywords of `measure`.
 _VARIABLES = {
@@ -79,8 +80,13 @@ def _common_flags() -> _Parser:
     parser.add_argument("--out", type=Path, help="folder for data and pictures; required")
     parser.add_argument("--edit", action="store_true", help="copy the module to it; draw nothing")
     effort = parser.add_mutually_exclusive_group()
-    for level, text in [("quick", "few samples"), ("full", "the paper's number of samples or more")]:
-        effort.add_argument(f"--{level}", dest="effort", action="store_const", const=level, help=text)
+    for level, text in [
+        ("quick", "few samples"),
+        ("full", "the paper's number of samples or more"),
+    ]:
+        effort.add_argument(
+            f"--{level}", dest="effort", action="store_const", const=level, help=text
+        )
     return parser
 
 

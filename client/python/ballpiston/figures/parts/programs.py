@@ -13,7 +13,7 @@ import numpy as np
 
 from ballpiston.errors import Error, InvalidArgument
 from ballpiston.figures.parts.tables import Table
-from ballpiston.server_address import find_private_server
+from ballpiston.private_server import find_private_server
 
 
 class ProgramFailed(Error):

@@ -19,8 +19,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from ballpiston.document import write_atomically
 from ballpiston.figures.parts.tables import Table, Tables, distinct, rows
+from ballpiston.whole_file import write_atomically
 
 BLUE, ORANGE, GREEN, PINK = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
 BLACK, GREY, EDGE = "#202020", "#808080", "#8c8c8c"

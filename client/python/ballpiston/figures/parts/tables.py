@@ -11,7 +11,7 @@ from ballpiston.closed_forms import ClosedForms
 from ballpiston.fields import FloatArray as FloatArray
 from ballpiston.point import Point
 from ballpiston.result import Result
-from ballpiston.document import Table as Table
+from ballpiston.table import Table as Table
 
 Tables = dict[str, Table]
 

@@ -1,0 +1,99 @@
+"""How the client and the server authenticate each other.
+
+    nothing set        no encryption: a Unix socket, or a server on the loopback
+    tls                TLS; the system's certificate authorities verify the server
+    ca                 TLS; the certificate authorities in this file verify the server
+    token              sent with every call, over TLS or to a loopback address
+"""
+
+import os
+import stat
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import grpc
+
+from ballpiston.errors import PermissionDenied
+from ballpiston.server_address import is_loopback, is_socket
+
+_MOST_FILE_BYTES = 1 << 20
+_LONGEST_TOKEN = 256
+
+
+@dataclass(frozen=True)
+class ChannelSecurity:
+    """The files and the token. Empty: not given."""
+
+    tls: bool = False
+    ca: str = ""
+    token_file: str = ""
+    token: str = field(default="", repr=False)
+
+    @property
+    def has_tls(self) -> bool:
+        return self.tls or bool(self.ca)
+
+    @property
+    def has_token(self) -> bool:
+        return bool(self.token_file or self.token)
+
+
+def check_security(security: ChannelSecurity, address: str) -> None:
+    """Whether these go together, and with the address. Reads no file. Raises ValueError: says what
+    does not fit, for instance a token without TLS."""
+    if is_socket(address) and (security.has_tls or security.has_token):
+        raise ValueError(
+            "a Unix socket uses no TLS and no token: only the server's own user can open it"
+        )
+    if security.has_token and not security.has_tls and not is_loopback(address):
+        raise ValueError(
+            "a token is not sent to another machine over a connection that others can read: use TLS "
+            "(ca=FILE, or tls=True for the authorities of this system)"
+        )
+
+
+def credentials_of(security: ChannelSecurity) -> Any | None:
+    """gRPC's credentials, or None for a channel without encryption. Reads the authority file, which
+    has to look like PEM: gRPC would report only that there is no connection. Raises ValueError:
+    names a file that cannot be used."""
+    if not security.has_tls:
+        return None
+    authorities = None
+    if security.ca:
+        authorities = _contents(security.ca, "authority file", is_secret=False)
+        if (first := "-----BEGIN CERTIFICATE-----").encode() not in authorities:
+            raise ValueError(
+                f'the authority file {security.ca} is not a PEM file: it does not contain "{first}"'
+            )
+    return grpc.ssl_channel_credentials(root_certificates=authorities)
+
+
+def token_of(security: ChannelSecurity) -> str:
+    """The token, or that in the token file. Raises ValueError: not a token, or a file that cannot
+    be read; PermissionDenied: other users can read the file."""
+    token, what = security.token, "the token"
+    if security.token_file:
+        what = f"the token file {security.token_file}"
+        data = _contents(security.token_file, "token file", is_secret=True)
+        token = data.decode("ascii", "replace").strip()
+    if 1 <= len(token) <= _LONGEST_TOKEN and all("!" <= c <= "~" for c in token):
+        return token
+    raise ValueError(f"{what} has to be one word of 1 to {_LONGEST_TOKEN} printable characters")
+
+
+def _contents(path: str, what: str, is_secret: bool) -> bytes:
+    try:
+        with Path(path).open("rb") as file:
+            mode = stat.S_IMODE(os.fstat(file.fileno()).st_mode)
+            if is_secret and mode & (stat.S_IRWXG | stat.S_IRWXO):
+                raise PermissionDenied(
+                    f"the {what} {path} is open to other users (mode {mode:04o}): chmod 600 it, "
+                    "and if others may have read it ask for a new one"
+                )
+            data = file.read(_MOST_FILE_BYTES + 1)
+    except OSError as error:
+        raise ValueError(f"the {what} {path} cannot be read: {error.strerror}") from error
+    if len(data) > _MOST_FILE_BYTES:
+        raise ValueError(f"the {what} {path} is longer than {_MOST_FILE_BYTES} bytes")
+    return data

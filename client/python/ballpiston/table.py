@@ -1,0 +1,53 @@
+"""Tables of named columns: in files (.csv, .npz or .parquet) and as data frames."""
+
+import csv
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ballpiston.whole_file import whole_file
+
+Table = dict[str, npt.NDArray[Any]]
+
+
+def frame_of(table: Any) -> Any:
+    """A pandas.DataFrame of rows or of columns by name."""
+    import pandas
+
+    return pandas.DataFrame(table)
+
+
+def write_table(path: Path, table: Table, comment: str = "") -> None:
+    """Writes the whole file or none. A .csv file has all digits, and an empty cell for NaN. If
+    there is a comment, it is the first line, after a #. Raises ModuleNotFoundError: .parquet needs
+    pandas and pyarrow."""
+    with whole_file(path) as part:
+        if path.suffix == ".csv":
+            with part.open("w", newline="", encoding="utf-8") as file:
+                file.write(f"# {comment}\n" if comment else "")
+                writer = csv.writer(file, lineterminator="\n")
+                writer.writerow(table)
+                for row in zip(*(column.tolist() for column in table.values())):
+                    writer.writerow(map(_cell, row))
+        elif path.suffix == ".npz":
+            part.write_bytes(npz_of(table))
+        else:
+            frame_of(table).to_parquet(part, index=False)
+
+
+def npz_of(table: Table) -> memoryview:
+    """The bytes of an .npz file, made in memory: an archive in a file would write to it again
+    after a failed write, when Python destroys the archive."""
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **table)
+    return buffer.getbuffer()
+
+
+def _cell(value: Any) -> Any:
+    """The content of the cell: 64 for 64.0, empty for NaN."""
+    if not isinstance(value, float):
+        return value
+    return "" if np.isnan(value) else repr(value).removesuffix(".0")
