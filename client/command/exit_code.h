@@ -7,7 +7,9 @@ namespace ballpiston::client {
 
 enum class ExitCode {
   kDone = 0,
-  kUsage = 2,        // wrong usage or an invalid argument, or a job too large for the server
+  // Wrong usage or an invalid argument, a job too large for the server, or output that cannot be
+  // written.
+  kUsage = 2,
   kUnreachable = 3,  // no server answers, or the server is busy: retry later
   kFailed = 4,       // the job failed or was cancelled, or its state does not permit the call
   kNotFound = 5,     // no such job, or no result of that point

@@ -32,5 +32,5 @@ int main(int argc, char** argv) {
   const absl::Status written = out.Finish();
   if (written.ok()) return static_cast<int>(code);
   std::cerr << "ballpiston: " << written.message() << '\n';
-  return static_cast<int>(ExitCode::kFailed);
+  return static_cast<int>(ExitCode::kUsage);  // as for a file that cannot be written (new_file.h)
 }

@@ -123,7 +123,7 @@ absl::Status ToArrays(NewFile& file, const Options& options, Terminal& terminal)
       RunPythonProgram("ballpiston.command", {"arrays", part}, options, terminal);
   if (!end.ok()) return end.status();
   if (*end == ExitCode::kDone) return absl::OkStatus();
-  return absl::InternalError(absl::StrCat("--save: ", options.save, " is not written"));
+  return absl::InvalidArgumentError(absl::StrCat("--save: ", options.save, " is not written"));
 }
 
 bool IsNpz(const Options& options) { return absl::EndsWith(options.save, ".npz"); }

@@ -252,7 +252,7 @@ const FlagGroup kTrace = {
      {"--seed", Seed([](Options& o, uint64_t seed) { o.trace.set_seed(seed); }),
       "seed of the random start, by default 0"},
      Required("--events", Count([](Options& o, int64_t n) { o.trace.set_events(n); }),
-              "number of events")}};
+              "number of events, 1 to 1,000,000")}};
 
 const FlagGroup kListFilter = {
     "Which jobs",
@@ -680,7 +680,9 @@ const std::vector<const FlagGroup*>& QuestionFlags() { return kQuestion; }
 const std::vector<Remark>& ExitCodes() {
   static const auto* const codes = new std::vector<Remark>{
       {"0", "success"},
-      {"2", "wrong usage or an invalid argument, or a job too large for the server"},
+      {"2",
+       "wrong usage or an invalid argument, a job too large for the server, or output that cannot "
+       "be written"},
       {"3", "no server answers, or the server is busy: retry later"},
       {"4", "the job failed or was cancelled, or its state does not permit the call"},
       {"5", "no such job, or no result of that point"},

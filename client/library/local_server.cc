@@ -77,11 +77,11 @@ absl::Status MakeFolder(const std::string& folder) {
 
 absl::StatusOr<std::string> SocketIn(const std::string& folder) {
   const std::string usual = folder + "/server.socket";
-  if (usual.size() <= kMaxSocketPath) return usual;
+  if (IsSocketPath(usual)) return usual;
   std::string root = PathVariable("TMPDIR");
   const std::string name = absl::StrCat("/ballpiston-", getuid(), "-", RequestIdFor(folder));
   constexpr char kSocket[] = "/server.socket";
-  if (root.empty() || root.size() + name.size() + sizeof(kSocket) > kMaxSocketPath) root = "/tmp";
+  if (root.empty() || !IsSocketPath(root + name + kSocket)) root = "/tmp";
   if (absl::Status made = MakeFolder(root + name); !made.ok()) return made;
   if (absl::Status own = CheckPrivate(root + name, 077); !own.ok()) return own;
   return absl::StrCat(root, name, kSocket);
@@ -125,7 +125,7 @@ absl::Status Start(const LocalServer& server, grpc::Channel& channel) {
     failure =
         address.ok()
             ? absl::UnavailableError(absl::StrCat("the server at ", *address, " does not answer"))
-            : absl::UnavailableError(address.status().message());
+            : address.status();
   }
   return failure;
 }

@@ -24,7 +24,7 @@ namespace ballpiston::client {
 
 struct LocalServer {
   std::string folder;   // data and log
-  std::string socket;   // at most kMaxSocketPath bytes long
+  std::string socket;   // IsSocketPath (server_address.h)
   std::string program;  // what to start (server_process.h)
   // The longest wait for a server that runs but does not answer.
   absl::Duration start_time = absl::Minutes(1);
@@ -36,14 +36,15 @@ struct LocalServer {
 std::string StateFolder();
 
 // Reads the environment: XDG_STATE_HOME, HOME, TMPDIR, BALLPISTON_SERVER_PROGRAM (else
-// `ballpistond` beside this program, else in PATH). Creates the folders. If the state folder's path
-// is too long for a socket, the socket is in a private folder in $TMPDIR or /tmp.
+// `ballpistond` beside this program, else in PATH). Creates the folders. If gRPC cannot use a
+// socket in the state folder (IsSocketPath), the socket is in a private folder in $TMPDIR or /tmp.
 // PERMISSION_DENIED if a folder is another user's or others can write to it, or the error from
 // creating a folder.
 absl::StatusOr<LocalServer> FindLocalServer();
 
 // Starts the server if needed, and returns a channel on which the server answers. UNAVAILABLE, with
-// the last line of its log, if the server does not answer.
+// the last line of its log, if the server does not answer; INVALID_ARGUMENT or PERMISSION_DENIED if
+// it cannot start, for instance because its store is of another version (StartServer).
 absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectToLocalServer(const LocalServer& server);
 
 // The same, but starts no server: UNAVAILABLE if no server answers.

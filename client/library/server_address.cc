@@ -28,17 +28,23 @@ bool IsHost(absl::string_view text) {
 
 }  // namespace
 
+bool IsSocketPath(absl::string_view path) {
+  return !path.empty() && path.size() <= kMaxSocketPath &&
+         path.find_first_of("#?,%") == absl::string_view::npos;
+}
+
 absl::StatusOr<std::string> GrpcTarget(absl::string_view address) {
   absl::string_view path = address;
   const bool is_socket = absl::ConsumePrefix(&path, "unix:");
-  if (is_socket && !path.empty() && path.size() <= kMaxSocketPath) return std::string(address);
+  if (is_socket && IsSocketPath(path)) return std::string(address);
   const size_t colon = address.rfind(':');
   const bool is_tcp = !is_socket && colon != address.npos && IsHost(address.substr(0, colon)) &&
                       IsPort(address.substr(colon + 1));
   if (is_tcp) return absl::StrCat("dns:///", address);
   return absl::InvalidArgumentError(absl::StrCat(
       Quoted(address), " is not a server's address: write host:port or unix:PATH (a port is 1 to ",
-      "65535, and the path of a socket has at most ", kMaxSocketPath, " bytes)"));
+      "65535, and the path of a socket has at most ", kMaxSocketPath,
+      " bytes and none of the characters # ? , %)"));
 }
 
 std::string LiteralAddress(absl::string_view address) {

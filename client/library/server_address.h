@@ -16,6 +16,10 @@ namespace ballpiston::client {
 // The longest path a Unix socket may have, in bytes (sun_path holds 108 on Linux).
 inline constexpr size_t kMaxSocketPath = 100;
 
+// Whether gRPC can use the path: it is not too long, and has none of # ? , %, because gRPC reads
+// unix:PATH as a URI.
+bool IsSocketPath(absl::string_view path);
+
 // The target string that gRPC needs. INVALID_ARGUMENT, with the form of an address, if `address` is
 // not an address.
 absl::StatusOr<std::string> GrpcTarget(absl::string_view address);

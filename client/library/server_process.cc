@@ -151,7 +151,11 @@ std::optional<RunningServer> FindServer(const std::string& folder) {
 absl::StatusOr<std::string> StartServer(const ServerProgram& program, absl::Duration timeout) {
   const uintmax_t log_start = EndOfLog(program);
   const absl::StatusOr<pid_t> pid = StartProgram(program);
-  if (!pid.ok()) return absl::UnavailableError(pid.status().message());
+  if (!pid.ok()) {
+    return absl::UnavailableError(
+        absl::StrCat(pid.status().message(),
+                     "; install the package ballpistond, or name a server with --server"));
+  }
   std::string address;
   std::optional<int> exit_status;
   Await(timeout, [&] {

@@ -33,7 +33,8 @@ inline constexpr double kMaxExponent = 1000;
 absl::Status ValidateCells(double cells);  // OK if `cells` is the code of a shape
 
 inline constexpr Parameter kRho = {.name = "rho", .index = 0, .validate = ValidateRho};
-inline constexpr Parameter kDelta = {.name = "delta", .index = 1, .validate = ValidateSomeDelta};
+inline constexpr Parameter kDelta = {
+    .name = "delta", .index = 1, .validate = ValidatePositiveDelta};
 inline constexpr Parameter kEpsilon = {"epsilon", 2, 0, 0.5};
 inline constexpr Parameter kExponent = {"exponent", 3, 0, kMaxExponent};
 // The shape of a gas, as the code that CodeOf of core/gas/gas_shape.h makes of it.

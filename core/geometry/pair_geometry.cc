@@ -53,10 +53,10 @@ absl::Status ValidateGasDelta(double rho, double delta) {
                        "the bound of a gas, where no two pistons may overlap");
 }
 
-absl::Status ValidateSomeDelta(double delta) {
-  if (delta > 0 && delta < 0.5) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("delta is ", NumberText(delta),
-                                                 "; permitted: 0 < delta <= (1 - lambda)/2 < 1/2"));
+absl::Status ValidatePositiveDelta(double delta) {
+  if (delta > 0) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("delta is ", NumberText(delta), "; permitted: 0 < delta <= (1 - lambda)/2"));
 }
 
 absl::StatusOr<PairGeometry> PairGeometry::Create(double rho, double delta) {

@@ -74,6 +74,6 @@ class PairGeometry {
 absl::Status ValidateRho(double rho);
 absl::Status ValidatePairDelta(double rho, double delta);  // rho has to be valid
 absl::Status ValidateGasDelta(double rho, double delta);   // likewise
-absl::Status ValidateSomeDelta(double delta);  // OK if some rho permits delta: 0 < delta < 1/2
+absl::Status ValidatePositiveDelta(double delta);  // without a rho: the other bound needs it
 
 }  // namespace ballpiston

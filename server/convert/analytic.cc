@@ -53,7 +53,7 @@ void CheckPairs(const v1::EvaluatePairsRequest& request, Violations& violations)
   for (int i = 0; i < request.delta_size() && !Enough(violations); ++i) {
     const double delta = request.delta(i);
     Add(Element("delta", i),
-        largest_rho > 0 ? ValidatePairDelta(largest_rho, delta) : ValidateSomeDelta(delta),
+        largest_rho > 0 ? ValidatePairDelta(largest_rho, delta) : ValidatePositiveDelta(delta),
         violations);
   }
 }

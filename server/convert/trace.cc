@@ -42,7 +42,7 @@ std::optional<GasShape> ShapeOf(const v1::TraceOrbitRequest& request, Violations
 
 void CheckDelta(const v1::TraceOrbitRequest& request, bool has_rho, Violations& violations) {
   const double rho = request.rho(), delta = request.delta();
-  if (!has_rho) return Add("delta", ValidateSomeDelta(delta), violations);
+  if (!has_rho) return Add("delta", ValidatePositiveDelta(delta), violations);
   Add("delta",
       request.cells().empty() ? ValidatePairDelta(rho, delta) : ValidateGasDelta(rho, delta),
       violations);

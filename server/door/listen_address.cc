@@ -27,10 +27,13 @@ absl::StatusOr<ListenAddress> ParseSocket(const std::string& text, const std::st
   ListenAddress address;
   address.socket_path = path;
   if (path.empty()) return Refused(text, "the path is empty");
-  if (path.size() <= kMaxSocketPath) return address;
-  return Refused(
-      text, absl::StrCat("the path has ", path.size(), " bytes, a Unix socket's at most ",
-                         kMaxSocketPath, " (choose a shorter one with --listen or --data-dir)"));
+  constexpr char kChoose[] = " (choose another path with --listen or --data-dir)";
+  if (path.size() > kMaxSocketPath) {
+    return Refused(text, absl::StrCat("the path has ", path.size(),
+                                      " bytes, a Unix socket's at most ", kMaxSocketPath, kChoose));
+  }
+  if (path.find_first_of("#?,%") == std::string::npos) return address;
+  return Refused(text, absl::StrCat("gRPC cannot use a path with # ? , or %", kChoose));
 }
 
 // Whether the text may be a host. The client has the same rule (client/library/server_address.cc).

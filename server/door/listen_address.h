@@ -22,9 +22,9 @@ struct ListenAddress {
   bool IsLoopback() const;
 };
 
-// Parses unix:PATH or HOST:PORT. HOST is an IPv4 address, an IPv6 address in brackets, or a name,
-// which gRPC reads; localhost is 127.0.0.1. 0.0.0.0 and [::] both mean every IPv4 and IPv6 address
-// of this machine.
+// Parses unix:PATH or HOST:PORT. PATH has none of # ? , %, because gRPC reads unix:PATH as a URI.
+// HOST is an IPv4 address, an IPv6 address in brackets, or a name, which gRPC reads; localhost is
+// 127.0.0.1. 0.0.0.0 and [::] both mean every IPv4 and IPv6 address of this machine.
 // INVALID_ARGUMENT names the flag --listen, the value, and the permitted values.
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
 

@@ -83,7 +83,7 @@ INSERT INTO server (identity) VALUES (lower(hex(randomblob(8))));
 
 absl::Status Refused(const std::string& path, const std::string& why) {
   return absl::FailedPreconditionError(absl::StrCat(
-      "store ", path, " ", why, "; it is unchanged: move it away, or choose another --data-dir"));
+      "store ", path, " ", why, "; it is unchanged: move it away, or use another data folder"));
 }
 
 // If the disk is full or fails, or the file belongs to another user, the error says nothing about

@@ -93,7 +93,7 @@ TEST_F(JobTest, AClosedPipeExitsWithZero) {
 
 TEST_F(JobTest, AFullDiskIsAnError) {
   const ProcessResult full = Bash("$client list >/dev/full");
-  EXPECT_THAT(full, ExitsWith(4));
+  EXPECT_THAT(full, ExitsWith(2));
   EXPECT_THAT(full.err, HasSubstr("cannot write standard output: No space left"));
 }
 

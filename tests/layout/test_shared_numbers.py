@@ -1,6 +1,6 @@
 """A number that several pages state is equal on all of them, and in docs/numbers.md. A page marks
 such a number with its name: 21<!--gain-rare-avx2-->. The files that name the version of the
-project, its date or the engine's version agree, too."""
+project, its date or the engine's version agree, too. So do `make` and what is installed."""
 
 from __future__ import annotations
 
@@ -77,3 +77,10 @@ def test_the_date_and_the_engine_are_the_same_in_all_files() -> None:
     assert found("codemeta.json", '"datePublished": "([^"]+)"') == date
     engine = found("core/engine_version.h", r'kEngineVersion\[\] = "([^"]+)"')
     assert found("CHANGELOG.md", r"^## .*, engine (\S+)") == engine
+
+
+def test_make_builds_all_programs_and_pages_that_are_installed() -> None:
+    lists = "".join([text_of("CMakeLists.txt"), *files(FOLDERS, ".txt").values()])
+    installed = re.findall(r"(?:install\(TARGETS|custom_target\()([\w -]+) (?:RUNTIME|ALL)", lists)
+    built = found("Makefile", "^PROGRAMS := (.*)").split()
+    assert {"ballpiston-worker", "pages"} <= set(" ".join(installed).split()) <= set(built)

@@ -283,7 +283,7 @@ class Comparison {
 
 // If rho is not permitted, checks only what does not depend on rho.
 absl::Status ValidateDelta(double rho, double delta) {
-  return ValidateRho(rho).ok() ? ValidatePairDelta(rho, delta) : ValidateSomeDelta(delta);
+  return ValidateRho(rho).ok() ? ValidatePairDelta(rho, delta) : ValidatePositiveDelta(delta);
 }
 
 }  // namespace

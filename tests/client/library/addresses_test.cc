@@ -22,7 +22,8 @@ TEST(ServerAddress, RejectsAnythingElse) {
   const std::string long_socket = "unix:" + std::string(kMaxSocketPath + 1, 'x');
   for (const std::string text :
        {"", "localhost", ":50051", "localhost:", "localhost:0", "localhost:65536", "localhost:x",
-        "http://localhost:1", "::1:50051", "[]:1", "a b:1", "unix:", long_socket.c_str()}) {
+        "http://localhost:1", "::1:50051", "[]:1", "a b:1", "unix:", "unix:a#b", "unix:a?b",
+        "unix:a,b", "unix:a%20b", long_socket.c_str()}) {
     EXPECT_THAT(GrpcTarget(text),
                 StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("host:port or unix:PATH")))
         << text;

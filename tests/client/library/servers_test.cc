@@ -116,7 +116,9 @@ TEST_F(ServerProcessTest, ErrorSaysThatTheLogCannotBeWritten) {
 
 TEST_F(ServerProcessTest, ErrorNamesAMissingProgram) {
   EXPECT_THAT(StartServer({.program = "/no/such/server", .folder = data_, .flags = {}}),
-              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("cannot start /no/such/server")));
+              StatusIs(absl::StatusCode::kUnavailable,
+                       AllOf(HasSubstr("cannot start /no/such/server"),
+                             HasSubstr("install the package ballpistond"))));
 }
 
 TEST_F(ServerProcessTest, AServerThatDoesNotListenIsFoundAndReported) {
@@ -228,7 +230,7 @@ TEST_F(LocalServerTest, AStateFolderThatOthersCanChangeIsRefused) {
                                           HasSubstr("belongs to user 65534 and has mode 0755")));
 }
 
-TEST_F(LocalServerTest, ALongPathHasItsSocketInAPrivateFolderElsewhere) {
+TEST_F(LocalServerTest, APathThatGrpcCannotUseHasItsSocketInAPrivateFolderElsewhere) {
   home_variable_.Set((home_ / std::string(100, 'x')).string());
   const TemporaryFolder elsewhere("/tmp");  // a short path, whatever TMPDIR is
   temporary_.Set(elsewhere.path());
@@ -240,6 +242,10 @@ TEST_F(LocalServerTest, ALongPathHasItsSocketInAPrivateFolderElsewhere) {
   EXPECT_EQ(ModeOf(folder), 0700u);
   fs::permissions(folder, fs::perms::all);  // others can enter it
   EXPECT_THAT(FindLocalServer(), StatusIs(absl::StatusCode::kPermissionDenied));
+  for (const char* name : {"a#b", "a?b", "a,b", "a%20b"}) {
+    state_home_.Set((home_ / name).string());
+    EXPECT_THAT(FindLocalServer()->socket, StartsWith(elsewhere.path() + "/ballpiston-")) << name;
+  }
 }
 
 TEST_F(LocalServerTest, ErrorNamesAStateFolderThatCannotBeMade) {
@@ -264,6 +270,16 @@ TEST_F(LocalServerTest, UsesAServerThatAnswers) {
       .folder = home_.string(), .socket = running.SocketPath(), .program = Program("exit 1")};
   EXPECT_OK(ConnectToLocalServer(server));
   EXPECT_FALSE(fs::exists(home_ / "server.log"));  // no program was started
+}
+
+TEST_F(LocalServerTest, AServerThatWillNeverStartIsNotUnavailable) {
+  for (const auto& [program, code] : {std::pair("exit 2", absl::StatusCode::kInvalidArgument),
+                                      std::pair("exit 6", absl::StatusCode::kPermissionDenied)}) {
+    EXPECT_THAT(
+        ConnectToLocalServer(
+            {.folder = home_.string(), .socket = home_ / "socket", .program = Program(program)}),
+        StatusIs(code));
+  }
 }
 
 // Holds the lock of the folder, as a server of another client does.

@@ -26,10 +26,28 @@ TEST(ListenAddress, OnlyLoopbackIsLoopback) {
 }
 
 TEST(ListenAddress, ErrorsShowTheFlagAndTheValue) {
-  for (const char* text :
-       {"", "50051", "127.0.0.1", "127.0.0.1:", "127.0.0.1:65536", "127.0.0.1:-1", "127.0.0.1:http",
-        "::1:50051", "unix:", ":50051", "unix-abstract:x:y", "ipv4:127.0.0.1:1",
-        "dns:///localhost:1", "[]:1", "[::1:1", "[::1]%lo:1", " localhost:1", "a/b:1"}) {
+  for (const char* text : {"",
+                           "50051",
+                           "127.0.0.1",
+                           "127.0.0.1:",
+                           "127.0.0.1:65536",
+                           "127.0.0.1:-1",
+                           "127.0.0.1:http",
+                           "::1:50051",
+                           "unix:",
+                           ":50051",
+                           "unix-abstract:x:y",
+                           "ipv4:127.0.0.1:1",
+                           "dns:///localhost:1",
+                           "[]:1",
+                           "[::1:1",
+                           "[::1]%lo:1",
+                           " localhost:1",
+                           "a/b:1",
+                           "unix:a#b",
+                           "unix:a?b",
+                           "unix:a,b",
+                           "unix:a%20b"}) {
     const auto address = ParseListenAddress(text);
     EXPECT_THAT(address, StatusIs(absl::StatusCode::kInvalidArgument,
                                   HasSubstr(std::string("--listen=") + text)))
