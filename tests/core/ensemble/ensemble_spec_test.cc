@@ -60,7 +60,8 @@ TEST(EnsembleSpec, ListsAreChecked) {
        {"grid.epsilon[0]: [0, 0.5]", "grid.epsilon[1]: [0, 0.5]", "grid.epsilon[2]: [0, 0.5]"}},
       // Times outside of the range of a double. The smallest radius decides.
       {"first-hit rho=0.6 delta=0.5,inf",
-       {"grid.delta[0]: delta is 0.5; (1 - lambda)/2 = 0.1683", "grid.delta[1]: inf; = 0.1683"}},
+       {"grid.delta[0]: rho = 0.6: 0 < delta <= (1 - lambda)/2 = 0.1683",
+        "grid.delta[1]: rho = 0.6"}},
       {"first-hit delta=0.1,1e-36,5e-324",
        {"grid.delta[1]: is 1e-36, too small", "grid.delta[2]: too small"}},
       {"first-hit rho=0.6,0.50000000000000011 delta=1e-33", {"grid.delta[0]: too small"}},
