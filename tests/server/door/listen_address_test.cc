@@ -42,7 +42,6 @@ TEST(ListenAddress, ASocketPathThatGrpcCannotUseIsRefused) {
     EXPECT_THAT(ParseListenAddress(text), StatusIs(absl::StatusCode::kInvalidArgument,
                                                    HasSubstr(text + ": gRPC cannot use")));
   }
-
   const auto address = ParseListenAddress("unix:/" + std::string(107, 'x'));
   EXPECT_THAT(std::string(address.status().message()), HasSubstr("108 bytes"));
   EXPECT_OK(ParseListenAddress("unix:/" + std::string(106, 'x')));
