@@ -47,6 +47,9 @@ TEST(EnsembleSpec, ListsAreChecked) {
   ExpectViolations({
       {"first-hit rho=0.55,0.6 delta=0.2",
        {"grid.delta[0]: rho = 0.6: 0 < delta <= (1 - lambda)/2 = 0.1683"}},
+      {"first-hit rho=0.6 delta=0.5,inf",
+       {"grid.delta[0]: rho = 0.6: 0 < delta <= (1 - lambda)/2 = 0.1683",
+        "grid.delta[1]: rho = 0.6"}},
       {"equilibrium rho=", {"grid.rho: needs at least one"}},
       {"equilibrium epsilon=0.1 exponent=1",
        {"grid.epsilon: does not use this list", "grid.exponent: does not use this list"}},
@@ -59,8 +62,6 @@ TEST(EnsembleSpec, ListsAreChecked) {
       {"energy-relaxation epsilon=-0.1,0.51,nan",
        {"grid.epsilon[0]: [0, 0.5]", "grid.epsilon[1]: [0, 0.5]", "grid.epsilon[2]: [0, 0.5]"}},
       // Times outside of the range of a double. The smallest radius decides.
-      {"first-hit rho=0.6 delta=0.5,inf",
-       {"grid.delta[0]: delta is 0.5; (1 - lambda)/2 = 0.1683", "grid.delta[1]: inf; = 0.1683"}},
       {"first-hit delta=0.1,1e-36,5e-324",
        {"grid.delta[1]: is 1e-36, too small", "grid.delta[2]: too small"}},
       {"first-hit rho=0.6,0.50000000000000011 delta=1e-33", {"grid.delta[0]: too small"}},
