@@ -1,7 +1,6 @@
 #include "server/book/acceptance.h"
 
 #include "absl/strings/str_cat.h"
-#include "server/convert/errors.h"
 #include "server/convert/spec.h"
 #include "server/sha256.h"
 #include "server/store/sweeper.h"

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "ballpiston/v1/ensemble.pb.h"
-#include "core/ensemble/ensemble_spec.h"
+#include "server/convert/errors.h"
 #include "server/limits.h"
 #include "server/store/job_record.h"
 #include "server/store/job_table.h"
