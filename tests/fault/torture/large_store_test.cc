@@ -1,4 +1,5 @@
 // A server with much in its store starts quickly, and lists it in little memory.
+#include "core/engine_version.h"
 #include "server/convert/spec.h"
 #include "server/convert/timestamp.h"
 #include "server/store/job_name.h"
@@ -38,7 +39,7 @@ void InsertEnded(Database& database, int count, const v1::EnsembleSpec& spec,
     record.id = server::RandomId();
     *record.job.mutable_spec() = spec;
     server::SetTime(absl::Now(), record.job.mutable_create_time());
-    record.job.set_engine_version(server::EngineVersion());
+    record.job.set_engine_version(EngineVersion());
     record.job.mutable_progress()->set_points(1);
     server::InsertJob(database, record);
     server::JobEnd end;
