@@ -300,7 +300,8 @@ void FolderExecutor::LookAt(Leases::iterator laid) {
 void FolderExecutor::LookAtWaiting(Leases::iterator laid) {
   const Clock::time_point now = SteadyNow();
   const double timeout = laid->second.pace.timeout;
-  const double patience = has_workers_ ? timeout : SecondsOf(kLooksForAWorker * options_.look);
+  const double probe = std::min(timeout, SecondsOf(kLooksForAWorker * options_.look));
+  const double patience = has_workers_ ? timeout : probe;
   if (SecondsBetween(laid->second.alive, now) < patience) return;
   has_workers_ = taken_ > 0 || SecondsBetween(claimed_, now) < timeout;
   if (!has_workers_) next_laying_ = std::max(next_laying_, now + kLooksForThreads * options_.look);

@@ -53,7 +53,7 @@ def test_the_command_line_saves_the_same_arrays(home: Home, tmp_path: Path) -> N
             np.testing.assert_array_equal(saved[name], arrays[name], name)
 
 
-@pytest.mark.parametrize("end,code", [("kill $PPID; sleep 60; echo late", 130), ("exit 1", 4)])
+@pytest.mark.parametrize("end,code", [("kill $PPID; sleep 60; echo late", 130), ("exit 1", 2)])
 def test_a_conversion_to_arrays_that_does_not_end_keeps_the_previous_file(
     end: str,
     code: int,
