@@ -8,8 +8,8 @@ namespace ballpiston {
 inline constexpr char kEngineVersion[] = "0.24.0";
 
 // The version in this process. It ends with "-unfused" where the vector code has no fused
-// multiply-add, because its bits are others: what one process computed is not continued or merged
-// by another kind of process.
+// multiply-add, because its results differ in the last bits: what one process computed is not
+// continued or merged by another kind of process.
 std::string EngineVersion();
 
 }  // namespace ballpiston

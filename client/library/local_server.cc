@@ -49,7 +49,8 @@ absl::Status CheckPrivate(const std::string& folder, mode_t for_others) {
   struct stat status;
   if (lstat(folder.c_str(), &status) != 0) return absl::ErrnoToStatus(errno, folder);
   if (!S_ISDIR(status.st_mode)) {
-    return absl::PermissionDeniedError("not a folder, as the private server needs: " + folder);
+    return absl::PermissionDeniedError("the private server needs a folder, but this is not one: " +
+                                       folder);
   }
   const bool is_own = status.st_uid == geteuid();
   if (is_own && (status.st_mode & for_others) == 0) return absl::OkStatus();

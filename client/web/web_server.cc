@@ -45,7 +45,7 @@ const httplib::Headers& SafeHeaders() {
 
 // Uses a content provider: the library would compress a plain body, which is slow. If the response
 // has the header Connection: close, the provider fails at the end, so that the library closes the
-// connection. The header alone does not make it do so.
+// connection. The header alone does not make it close it.
 void Respond(std::string content, const std::string& type, Response& response) {
   const auto body = std::make_shared<const std::string>(std::move(content));
   if (body->empty()) return response.set_content("", type);
@@ -162,7 +162,7 @@ class WebServer {
             : "wrong token: each run of ballpiston web prints an address with a new token");
   }
 
-  // The library limits only a body of a given length; it reads another one to its end.
+  // The library limits only bodies with Content-Length; it reads others to their end.
   static absl::Status CheckBody(const Request& request) {
     const bool is_limited = request.has_header("Content-Length") &&
                             !request.has_header("Transfer-Encoding") &&
@@ -182,7 +182,7 @@ class WebServer {
       checked.Update(CheckBody(request));
     }
     if (checked.ok()) return httplib::Server::HandlerResponse::Unhandled;
-    response.set_header("Connection", "close");  // what follows is the body
+    response.set_header("Connection", "close");  // the unread body follows
     RespondError(checked, response);
     return httplib::Server::HandlerResponse::Handled;
   }

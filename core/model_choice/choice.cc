@@ -57,7 +57,7 @@ Answer AnswerNearTheLimit(const Question& question) {
   if (!error) return Billiard(question, "the limit's error is not known at this point");
   if (!question.IsSoundForBilliard() && question.target().IsOpenEnded() &&
       question.IsWithinTolerance(*error)) {
-    return {question.ModelOfLimit(), "the billiard is not sound at this rho and delta", *error};
+    return {question.ModelOfLimit(), "the billiard is not sound at this point", *error};
   }
   if (!question.HasRelativeError()) {
     return Billiard(question,

@@ -54,7 +54,7 @@ Rung RungFor(Model model, const Question& question, const Machine& machine) {
   }
   rung.memory = question.MemoryBy(model);
   if (IsABilliard(model) && !question.IsSoundForBilliard()) {
-    rung.reason = "rounding: this model is not sound at this rho and delta";
+    rung.reason = "rounding: this model is not sound at this point";
     return rung;
   }
   rung.answers = true;

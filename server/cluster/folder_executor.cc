@@ -106,8 +106,8 @@ absl::Status FolderExecutor::Prepare() {
   return prepared;
 }
 
-// A worker cannot compute the leases of another version and ends; and this process lays the same
-// chunks again.
+// A worker ends if a lease is of another engine version, and this process lays the same chunks
+// again.
 absl::Status FolderExecutor::RemoveEarlier() {
   files_->Remove(kLeaseBeingWritten).IgnoreError();
   const auto waiting = files_->List("todo");

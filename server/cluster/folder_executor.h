@@ -8,8 +8,9 @@
 //   - A lease in done/ ends. Its chunks are reported and on disk before its file is removed.
 //   - A lease in taken/ of which the server knows nothing is moved to done/, so its worker stops.
 //   - A lease that nobody takes goes back to the scheduler after the time-out. If no worker takes
-//     any, only one lease is laid, two looks later, so that this server's threads can take its
-//     chunks first. It goes back after ten looks. When a worker takes one, others are laid again.
+//     any, the server waits two looks, so that its own threads can take the chunks first. Then it
+//     lays one lease, which goes back after ten looks or the time-out, whichever is shorter. When a
+//     worker takes one, others are laid again.
 //   - A lease is lost if its file does not change, or is not there, for the time-out. The server
 //     compares times of the folder only with each other, and measures the time-out with its own
 //     steady clock. So a clock that jumps loses no lease.

@@ -6,17 +6,17 @@
 // queue counts those that are there, and the difference is submitted. All workers of a server have
 // one job name. One query in 30 s, fewer after an error; none while there is no work, no
 // worker in the queue and no problem. If two queries in turn find no leases, all workers are
-// cancelled; a server that has just started has none yet. Thread-safe. One thread, because Slurm's
-// tools may block for minutes.
+// cancelled; a server that has just started has no leases yet. Thread-safe. One thread, because
+// Slurm's tools may block for minutes.
 //
 // What the workers have shown decides how many are submitted at a query:
 //
-//   they      | since                                                      | submitted
-//   work      | the start, a lease that one of them took, or a query that  | those missing,
+//   state     | entered by                                                 | submitted
+//   working   | the start, a lease that one of them took, or a query that  | those missing,
 //             | finds as many as there are leases                          | at most `step_`
-//   fail      | one would wait for ever (those that wait are cancelled),   | one, for a trial
+//   failing   | one would wait for ever (those that wait are cancelled),   | one, for a trial
 //             | or all have ended without taking a lease                   |
-//   are tried | the submission of this one                                 | none
+//   on trial  | the submission of this one                                 | none
 //
 // `step_` is --slurm-workers at first. A failure makes it 1, a refusal by Slurm half of the number
 // that was missing, and each submission that Slurm accepts doubles it.
@@ -127,7 +127,7 @@ class SlurmWorkers {
   bool may_have_workers_ = true;  // of an earlier process
   bool was_empty_ = false;        // there was no lease at the last query
   absl::Status fault_;            // why the workers fail; OK: they work
-  // Workers were submitted when so many leases had been taken, and none was taken since.
+  // The number of leases taken when workers were submitted. Empty unless none was taken since.
   std::optional<double> trial_;
   size_t step_;
   Clock::time_point next_query_ = {};

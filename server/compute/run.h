@@ -57,8 +57,8 @@ struct SchedulerOptions {
   // A run with less to compute, in seconds of one core at nominal speed, is computed here: to send
   // it elsewhere would take longer.
   double least_seconds_elsewhere = 60;
-  // Bytes. The leases that local executors hold take no more together, unless one does alone. Nor
-  // do the points of a run that wait for executors elsewhere, about.
+  // Bytes. The leases that local executors hold take no more together, unless one does alone. The
+  // limit also holds, approximately, for the points of one run that wait for executors elsewhere.
   double memory_limit = std::numeric_limits<double>::infinity();
 };
 

@@ -188,9 +188,8 @@ void AddUnknownFields(const char* path, const google::protobuf::Message& message
                       std::vector<FieldViolation>& violations) {
   const auto& unknown = message.GetReflection()->GetUnknownFields(message);
   for (int i = 0; i < std::min(unknown.field_count(), kMostListed); ++i) {
-    violations.push_back({path, absl::StrCat("field number ", unknown.field(i).number(),
-                                             " is not one this server knows; is it older than "
-                                             "its client?")});
+    violations.push_back({path, absl::StrCat("unknown field number ", unknown.field(i).number(),
+                                             "; the server may be older than the client")});
   }
 }
 

@@ -41,9 +41,9 @@ class CountedStream : public grpc::experimental::Interceptor {
  private:
   absl::Status Check() const {
     if (!is_within_limit_) {
-      return absl::ResourceExhaustedError(absl::StrCat(
-          "all clients together have the most streams of this service that are permitted, ",
-          authenticator_ ? kReflectionStreams : kHealthWatches, "; retry later"));
+      return absl::ResourceExhaustedError(
+          absl::StrCat("all clients together have the maximum number of streams of this service, ",
+                       authenticator_ ? kReflectionStreams : kHealthWatches, "; retry later"));
     }
     return authenticator_ ? authenticator_->Authenticate(context_).status() : absl::OkStatus();
   }

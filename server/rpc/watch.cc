@@ -239,7 +239,7 @@ class Watch {
 
   std::string id_;
   FoundJob job_;
-  bool resumes_ = false;  // an earlier watch
+  bool resumes_ = false;  // whether this watch resumes an earlier one
   std::string told_progress_;
   JobState told_as_ = v1::EnsembleJob::STATE_UNSPECIFIED;  // the last state that was sent
   bool has_told_end_ = false;

@@ -22,7 +22,7 @@ _RETRIES = {
     "backoffMultiplier": 2,
     "retryableStatusCodes": ["UNAVAILABLE", "CANCELLED"],
 }
-# A method's own entry wins over the default: these are not retried.
+# A method's own entry overrides the default: these are not retried.
 _ONCE = [{"service": _ENSEMBLES, "method": f"{verb}EnsembleJob"} for verb in ("Watch", "Delete")]
 _SERVICE_CONFIG = {"methodConfig": [{"name": [{}], "retryPolicy": _RETRIES}, {"name": _ONCE}]}
 

@@ -88,8 +88,8 @@ def _contents(path: str, what: str, is_secret: bool) -> bytes:
             mode = stat.S_IMODE(os.fstat(file.fileno()).st_mode)
             if is_secret and mode & (stat.S_IRWXG | stat.S_IRWXO):
                 raise PermissionDenied(
-                    f"the {what} {path} is open to other users (mode {mode:04o}): chmod 600 it, "
-                    "and if others may have read it ask for a new one"
+                    f"the {what} {path} is open to other users (mode {mode:04o}): run chmod "
+                    "600 on it; if others may have read it, request a new one"
                 )
             data = file.read(_MOST_FILE_BYTES + 1)
     except OSError as error:

@@ -25,12 +25,13 @@ from ballpiston.table import npz_of, write_table
 _EXIT_CODES: list[tuple[type[BaseException], int]] = [
     (errors.InvalidArgument, 2),
     (errors.Unavailable, 3),
+    (errors.ResourceExhausted, 3),
     (errors.NotFound, 5),
     (errors.PermissionDenied, 6),
     (errors.Unauthenticated, 6),
     (errors.Error, 4),
     (KeyboardInterrupt, 130),
-    (OSError, 4),
+    (OSError, 2),
     (ValueError, 2),
     (TypeError, 2),
 ]

@@ -14,7 +14,7 @@ _WRONG_AUTHORITY = (
     "the server's certificate is not valid now, or was not signed by an authority {known}: name "
     "the right one with ca=FILE"
 )
-_WRONG_HOST = "the server's certificate is for another host: write the host as it stands there"
+_WRONG_HOST = "the server's certificate is for another host: use a host name that it contains"
 _NO_TLS = "that server does not use TLS: leave out ca and tls"
 # The kind of channel, a pattern of gRPC's text, and what to try.
 _HINTS = (

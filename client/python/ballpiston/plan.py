@@ -18,7 +18,7 @@ class Plan:
             points it has as many, evenly spread.
     """
 
-    points = shown(lambda plan: int(plan.point_count), "Of the grid.")
+    points = shown(lambda plan: int(plan.point_count), "Number of grid points.")
     work = shown(lambda plan: float(plan.work), "Seconds of processor time for the whole job.")
     time = shown(lambda plan: float(plan.time), "Seconds by the clock, if nothing else ran.")
     memory = shown(lambda plan: float(plan.memory), "Bytes of the largest point; an upper bound.")

@@ -126,7 +126,9 @@ def question_of(experiment: object, question: Mapping[str, Any], others: Iterabl
         return specification(experiment, **question)
     if question:
         given = ", ".join(question)
-        raise TypeError(f"a specification is a whole question: give no {given}, or change a copy")
+        raise TypeError(
+            f"a specification is already complete: do not also give {given}; change a copy of it"
+        )
     if isinstance(experiment, spec_pb2.EnsembleSpec):
         return experiment
     if isinstance(experiment, Mapping):

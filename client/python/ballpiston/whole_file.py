@@ -16,7 +16,7 @@ def write_atomically(path: Path, data: bytes) -> None:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """A file beside `path` to write to. It becomes `path` at the end, and goes after an error, so
+    """A file beside `path` to write to. It becomes `path` at the end, and is removed after an error, so
     that no half-written result remains. A pipe or a device is written to directly."""
     if path.exists() and not path.is_file():
         yield path
@@ -36,6 +36,6 @@ def whole_file(path: Path) -> Iterator[Path]:
         finally:
             temporary.unlink(missing_ok=True)
     except OSError as error:
-        if error.strerror:  # that of a write names no file, others the temporary one
+        if error.strerror:  # errors of writes name no file, others the temporary one
             error.filename = str(path)
         raise

@@ -272,7 +272,7 @@ TEST_F(LocalServerTest, UsesAServerThatAnswers) {
   EXPECT_FALSE(fs::exists(home_ / "server.log"));  // no program was started
 }
 
-TEST_F(LocalServerTest, AServerThatWillNeverStartIsNotUnavailable) {
+TEST_F(LocalServerTest, PermanentFailuresToStartKeepTheirStatus) {
   for (const auto& [program, code] : {std::pair("exit 2", absl::StatusCode::kInvalidArgument),
                                       std::pair("exit 6", absl::StatusCode::kPermissionDenied)}) {
     EXPECT_THAT(

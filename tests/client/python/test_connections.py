@@ -119,7 +119,7 @@ def test_an_error_says_how_long_to_wait() -> None:
     assert details_of(status_pb2.Status()).retry_delay == 0
 
 
-def test_violations_that_are_left_out_are_counted_if_their_number_is_one() -> None:
+def test_left_out_violations_are_counted_if_the_metadata_has_a_number() -> None:
     for stated, text in (("2", "not valid, 2 violations:\n  and 2 more"), ("many", "wrong")):
         assert Details(metadata={"violations_left_out": stated}).text("wrong") == text
 

@@ -136,7 +136,8 @@ TEST(StandardErrors, ShareThatMeetsIsAboutTheMeasuredOne) {
 }
 
 // In a small cell most meetings of a slow ball are two collisions at once, and the second one
-// undoes the first. Mean squares of z over 20 seeds; found: up to 2, and up to 70 before.
+// undoes the first. Measured mean squares of z over 20 seeds: up to 2. Errors without the second
+// collision give up to 70.
 TEST(StandardErrors, OfARelaxationsCurveAreAtMostTwiceTooSmall) {
   for (const char* epsilon : {"0.499", "0.49999"}) {
     const std::string question =

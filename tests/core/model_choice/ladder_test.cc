@@ -55,9 +55,8 @@ TEST(Ladder, ModelsAreChosenWithAReason) {
            {"energy-relaxation rho=0.50000378 delta=7e-9 epsilon=0 tolerance=0.1", kSpectrum,
             "is within the tolerance"},
            // Beyond the billiard's domain the limit answers.
-           {"energy-relaxation delta=1e-12 tolerance=0.01", kSpectrum,
-            "not sound at this rho and delta"},
-           {"energy-relaxation delta=1e-12 budget=1", kSpectrum, "not sound at this rho and delta"},
+           {"energy-relaxation delta=1e-12 tolerance=0.01", kSpectrum, "not sound at this point"},
+           {"energy-relaxation delta=1e-12 budget=1", kSpectrum, "not sound at this point"},
            // A budget weighs the statistical error against that of the model.
            {"energy-relaxation delta=0.3 budget=1", kBilliard},
            {"gas-conduction delta=0.0125 budget=1e-3", kMarkov},

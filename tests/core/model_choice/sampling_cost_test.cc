@@ -13,7 +13,7 @@ namespace {
 
 struct Case {
   std::string question;
-  double factor;  // beyond what is found by 10 % or more
+  double factor;  // bound of stated/measured, at least 10 % above the measured ratio
 };
 
 std::vector<Case> CasesOfErrors() {

@@ -277,7 +277,7 @@ TEST_F(FolderExecutorTest, WhileThereIsNoWorkerTheThreadsComputeAndOneLeaseWaits
   EXPECT_THAT(In("todo"), SizeIs(2));
 }
 
-TEST_F(FolderExecutorTest, LeasesThatNobodyTookAreLaidAgainAfterThreadsHadTheirChoice) {
+TEST_F(FolderExecutorTest, ThreadsCanTakeReturnedLeasesFirst) {
   Restart({.timeout = milliseconds(0), .look = std::chrono::hours(1), .least_waiting = 2});
   const auto journal = Begin();
   executor_->Look();

@@ -155,7 +155,7 @@ TEST(WorkerProgram, PrintsItsEngineVersion) {
 
 #ifdef BALLPISTON_STATIC_WORKER
 #ifdef __x86_64__
-// Its bits are others, so its engine is another one.
+// Its results differ in the last bits, so its engine is another one.
 TEST(WorkerProgram, HasAnotherEngineWithoutFusedMultiplyAdd) {
   const ProcessResult result =
       RunProgram({.command = {"env", "GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2", WorkerProgram(),
