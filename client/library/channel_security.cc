@@ -38,8 +38,8 @@ absl::Status CheckOwnersOnly(const std::string& what, const std::string& path, i
   constexpr mode_t kForOthers = S_IRWXG | S_IRWXO;
   if ((status.st_mode & kForOthers) == 0) return absl::OkStatus();
   return absl::PermissionDeniedError(absl::StrFormat(
-      "the %s %s is open to other users (mode %04o): chmod 600 it; if another user may "
-      "have read it, ask for a new one",
+      "the %s %s is open to other users (mode %04o): run chmod 600 on it; if others "
+      "may have read it, request a new one",
       what, path, status.st_mode & 07777));
 }
 

@@ -127,6 +127,8 @@ absl::Status Start(const LocalServer& server, grpc::Channel& channel) {
         address.ok()
             ? absl::UnavailableError(absl::StrCat("the server at ", *address, " does not answer"))
             : address.status();
+    // A server of another client that holds the folder soon answers, or releases it.
+    if (FindServer(server.folder)) failure = absl::UnavailableError(failure.message());
   }
   return failure;
 }

@@ -45,7 +45,7 @@ const httplib::Headers& SafeHeaders() {
 
 // Uses a content provider: the library would compress a plain body, which is slow. If the response
 // has the header Connection: close, the provider fails at the end, so that the library closes the
-// connection. The header alone does not make it close it.
+// connection. The header alone does not close it.
 void Respond(std::string content, const std::string& type, Response& response) {
   const auto body = std::make_shared<const std::string>(std::move(content));
   if (body->empty()) return response.set_content("", type);

@@ -25,7 +25,6 @@ from ballpiston.table import npz_of, write_table
 _EXIT_CODES: list[tuple[type[BaseException], int]] = [
     (errors.InvalidArgument, 2),
     (errors.Unavailable, 3),
-    (errors.ResourceExhausted, 3),
     (errors.NotFound, 5),
     (errors.PermissionDenied, 6),
     (errors.Unauthenticated, 6),
@@ -35,6 +34,8 @@ _EXIT_CODES: list[tuple[type[BaseException], int]] = [
     (ValueError, 2),
     (TypeError, 2),
 ]
+# A retry does not help against these; against other limits of the server it does.
+_LASTING_LIMITS = ("TOO_MANY_POINTS", "TOO_MANY_PINNED_BYTES")
 
 
 def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str]) -> int:
@@ -47,8 +48,17 @@ def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str
     except tuple(kind for kind, _ in _EXIT_CODES) as error:
         if not isinstance(error, KeyboardInterrupt):
             print(f"ballpiston: {_with_flags(error)}", file=sys.stderr)
-        return next(code for kind, code in _EXIT_CODES if isinstance(error, kind))
+        return exit_code_of(error)
     return 0
+
+
+def exit_code_of(error: BaseException) -> int:
+    """That of the program ballpiston for the same error."""
+    if isinstance(error, errors.NoPrivateServer) and error.exit_code:
+        return error.exit_code
+    if isinstance(error, errors.ResourceExhausted) and error.reason:
+        return 2 if error.reason in _LASTING_LIMITS else 3
+    return next(code for kind, code in _EXIT_CODES if isinstance(error, kind))
 
 
 def _with_flags(error: BaseException) -> str:

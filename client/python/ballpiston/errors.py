@@ -83,4 +83,7 @@ class DeadlineExceeded(Unavailable):
 
 
 class NoPrivateServer(Unavailable):
-    """The private server cannot be started, for instance because no program is installed."""
+    """The private server cannot be started, for instance because no program is installed.
+    `exit_code` is that of the program ballpiston, 0 if it was not run to its end."""
+
+    exit_code = 0

@@ -74,7 +74,9 @@ class Job:
         self.message = message
         self.answered_from_store = bool(message.answered_from_store)
 
-    name = shown(lambda job: str(job.name), "The name with which client.job(name) finds the job again.")
+    name = shown(
+        lambda job: str(job.name), "The name with which client.job(name) finds the job again."
+    )
     specification = shown(attrgetter("spec"), "The question, for client.submit.")
     experiment = shown(lambda job: spelled(job.spec, "experiment"), 'Such as "first-hit".')
     progress = shown(

@@ -57,7 +57,9 @@ class Point:
     """What was measured at one point, for instance result[0]["mean_hit_time"]."""
 
     index = shown(lambda point: int(point.index), "Position in the grid, rho outermost.")
-    model = shown(lambda point: spelled(point, "model"), 'The model that answered, such as "billiard".')
+    model = shown(
+        lambda point: spelled(point, "model"), 'The model that answered, such as "billiard".'
+    )
     reason = shown(lambda point: str(point.reason), "Why that model, if the server chose it.")
     samples = shown(
         lambda point: float(point.samples),

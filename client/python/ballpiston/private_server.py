@@ -39,7 +39,9 @@ class PrivateServer:
         if answer.returncode == 0 and is_socket(address):
             return address
         why = answer.stderr.strip().removeprefix(f"{_PROGRAM}: ") or "no address was printed"
-        raise NoPrivateServer(f"cannot start the private server with {self.program}: {why}")
+        failure = NoPrivateServer(f"cannot start the private server with {self.program}: {why}")
+        failure.exit_code = answer.returncode
+        raise failure
 
 
 def find_private_server() -> PrivateServer:

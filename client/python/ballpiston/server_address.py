@@ -37,7 +37,10 @@ def grpc_target(address: str) -> str:
     """The target that gRPC wants. Raises ValueError: this is not an address; the message shows the
     two forms."""
     if is_socket(address):
-        length = len(address.removeprefix(_SOCKET_SCHEME).encode())
+        path = address.removeprefix(_SOCKET_SCHEME)
+        if set(path) & set("#?,%"):
+            raise _bad_address(address, "gRPC cannot use a path with # ? , or %; ")
+        length = len(path.encode())
         if length > _LONGEST_SOCKET_PATH:
             raise _bad_address(address, f"its path has more than {_LONGEST_SOCKET_PATH} bytes; ")
         if length > 0:

@@ -16,8 +16,8 @@ def write_atomically(path: Path, data: bytes) -> None:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """A file beside `path` to write to. It becomes `path` at the end, and is removed after an error, so
-    that no half-written result remains. A pipe or a device is written to directly."""
+    """A file beside `path` to write to. It becomes `path` at the end, and is removed after an
+    error, so that no half-written result remains. A pipe or a device is written to directly."""
     if path.exists() and not path.is_file():
         yield path
         return

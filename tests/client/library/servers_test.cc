@@ -307,6 +307,15 @@ void AwaitFile(const fs::path& file, const std::stop_token& stop) {
   AwaitThat([&] { return fs::exists(file) || stop.stop_requested(); });
 }
 
+TEST_F(LocalServerTest, AFolderInUseIsUnavailable) {
+  const FolderInUse in_use(home_);
+  EXPECT_THAT(ConnectToLocalServer({.folder = home_.string(),
+                                    .socket = home_ / "socket",
+                                    .program = Program("exit 2"),
+                                    .start_time = absl::Seconds(1)}),
+              StatusIs(absl::StatusCode::kUnavailable));
+}
+
 TEST_F(LocalServerTest, DoesNotWaitForAServerThatListensElsewhere) {
   const LocalServer server{.folder = home_.string(),
                            .socket = home_ / "socket",

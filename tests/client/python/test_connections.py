@@ -44,7 +44,8 @@ def test_an_address_is_a_host_with_a_port_or_a_socket(address: str, target: str)
 
 
 @pytest.mark.parametrize(
-    "address", ["localhost", ":1", "a b:1", "::1:50051", "host:0", "host:65536", "host:x", "unix:"]
+    "address",
+    ["localhost", ":1", "a b:1", "::1:50051", "host:0", "host:65536", "host:x", "unix:", "unix:a#b"],
 )
 def test_other_texts_are_not_addresses(address: str) -> None:
     with pytest.raises(ValueError, match="write host:port, .* or unix:PATH"):

@@ -14,6 +14,7 @@ from conftest import FIRST_HITS, LIMIT, Home
 from google.protobuf import json_format
 
 import ballpiston
+from ballpiston.command import exit_code_of
 from ballpiston.whole_file import write_atomically
 
 
@@ -94,6 +95,15 @@ def test_a_full_disk_is_an_error_that_names_the_file(
     assert writer.communicate(timeout=LIMIT) == ("", f"ballpiston: {file}: File too large\n")
     assert writer.returncode == 2
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("reason,code", [("TOO_MANY_POINTS", 2), ("TOO_MANY_JOBS", 3), ("", 4)])
+def test_a_program_says_by_its_exit_code_whether_a_retry_helps(reason: str, code: int) -> None:
+    assert exit_code_of(ballpiston.ResourceExhausted("a limit", reason=reason)) == code
+    not_started = ballpiston.NoPrivateServer("a store of another version")
+    assert exit_code_of(not_started) == 3
+    not_started.exit_code = code
+    assert exit_code_of(not_started) == code
 
 
 def test_sigterm_interrupts_a_program_without_a_traceback(home: Home) -> None:
