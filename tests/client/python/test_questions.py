@@ -146,7 +146,7 @@ def test_a_wrong_progress_is_an_error_before_the_job_is_submitted(
 
 def test_a_whole_specification_stands_alone(client: ballpiston.Client) -> None:
     spec = ballpiston.specification("equilibrium", rho=0.53, delta=0.1)
-    with pytest.raises(TypeError, match="give no seed"):
+    with pytest.raises(TypeError, match="do not also give seed"):
         client.plan(spec, seed=1)
     document = {"experiment": "EQUILIBRIUM", "grid": {"rho": [0.53], "delta": [0.1]}}
     assert client.plan(document).message == client.plan(spec).message
