@@ -55,7 +55,8 @@ Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const M
 inline constexpr double kMostSeconds = 1e10;
 
 // Finds what the answering model cannot do. The spec must have no violations. The first of these:
-//   rho and delta outside of the billiard's domain (billiard/billiard_domain.h), if AUTO has to
+//   rho, delta or epsilon outside of the billiard's domain (billiard/billiard_domain.h), if AUTO
+//   has to
 //     choose the billiard at a point outside of it
 //   a tolerance that the model cannot reach: below the model's own error, or below the statistical
 //     error of the largest permitted number of samples, or where the estimate has no relative

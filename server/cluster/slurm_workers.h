@@ -9,7 +9,7 @@
 // cancelled; a server that has just started has no leases yet. Thread-safe. One thread, because
 // Slurm's tools may block for minutes.
 //
-// What the workers have shown decides how many are submitted at a query:
+// At a query the number of submitted workers depends on the state of the earlier ones:
 //
 //   state     | entered by                                                 | submitted
 //   working   | the start, a lease that one of them took, or a query that  | those missing,

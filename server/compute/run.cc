@@ -111,7 +111,8 @@ bool Run::IsWantedElsewhere() const {
   return hungry_elsewhere_ && HasPointsToOpen() && IsLarge() && PointsToOpenAhead() > 0;
 }
 
-// That may wait for executors elsewhere, beside those that are open. Requires IsLarge().
+// The number of points that this run may open for executors elsewhere, beside its open points.
+// Requires IsLarge().
 size_t Run::PointsToOpenAhead() const {
   const double one =
       std::max(sampled_memory_ / sampled_points_ - kMemoryOfAThread, kMemoryOfAnOpenPoint);

@@ -152,7 +152,7 @@ TEST(Ladder, TheLimitsRowsHaveTheirBoundAsTheModelError) {
   }
 }
 
-// What rings of jump processes conduct more than the infinite chain
+// The conductivity of a ring of jump processes over that of the infinite chain, less 1
 // (docs/research/conductivity.md).
 TEST(Ladder, TheSpectrumsConductivityHasTheErrorOfSmallRings) {
   for (const auto& [cells, difference] : {std::pair("3", 1.56e-4), {"5", 3.2e-5}, {"6", 1.6e-5}}) {

@@ -1,4 +1,4 @@
-// What a worker computes.
+// Computes the chunks of a lease, as a worker does.
 #pragma once
 
 #include <optional>
