@@ -56,8 +56,7 @@ inline constexpr double kMostSeconds = 1e10;
 
 // Finds what the answering model cannot do. The spec must have no violations. The first of these:
 //   rho, delta or epsilon outside of the billiard's domain (billiard/billiard_domain.h), if AUTO
-//   has to
-//     choose the billiard at a point outside of it
+//     has to choose the billiard at a point outside of it
 //   a tolerance that the model cannot reach: below the model's own error, or below the statistical
 //     error of the largest permitted number of samples, or where the estimate has no relative
 //     error. The limit's error counts for the spectrum; the tolerance of `markov` is that of its
