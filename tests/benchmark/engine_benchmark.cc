@@ -324,6 +324,7 @@ void AddAll() {
   AddRowsOfLanes("wall_hits/lanes_single", HitsInLanes(FlyLaneBallsSingle));
   AddPair(&kFirstHit, 0.0125);
   AddPair(&kFirstHit, 0.05);
+  AddPair(&kFirstHit, 0.2);
   AddPair(&kEquilibrium, 0.05);
   AddPair(&kEquilibrium, 0.2);
   for (const double delta : {0.2, 0.1, 0.05}) {
