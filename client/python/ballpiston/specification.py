@@ -49,8 +49,7 @@ def specification(
     most 100,000 points.
 
     Args:
-        experiment: its name, such as "first-hit"; docs/asking.md and the error of a wrong name list
-            all.
+        experiment: its name, such as "first-hit"; the error of a wrong name lists all.
         rho: radius of the discs; 1/2 < rho < 1/sqrt(2).
         delta: how far the piston reaches into the cell; 0 < delta <= (1 - sqrt(4 rho^2 - 1))/2.
         epsilon: energy of the piston; 0 to 1/2.
