@@ -167,9 +167,8 @@ const FlagGroup kMethod = {
       "by default auto, the cheapest model that gives the estimate"},
      {"--estimate",
       Text("NAME", [](Options& o, std::string name) { Target(o).set_estimate(std::move(name)); }),
-      "the estimate of --tolerance and --model auto; the result prints it first; gas-equilibrium, "
-      "lyapunov and gas-lyapunov have a choice; one of the names in docs/answers.md, and the error "
-      "of a wrong name lists them"},
+      "the estimate of --tolerance and --model auto, one of the names in docs/answers.md; the "
+      "result prints it first; the error of a wrong name lists those that the experiment permits"},
      {"--precision",
       OneOf<Spec::Precision>(
           "PRECISION", EnumChoices<Spec::Precision>(),

@@ -46,19 +46,21 @@ std::vector<ChunkResult> ChunkFold::Add(const Block& block, BlockResult result) 
   }
   early_.emplace(place, std::move(result));
   while (const auto next = early_.extract(NextPlace())) {
-    const bool is_last = partial_.blocks + 1 == plan_.BlocksIn(partial_.chunk);
-    PartialChunk whole_blocks;
-    if (is_last && partial_.chunk >= plan_.FirstCutChunk()) whole_blocks = partial_;
-    partial_.merged.Merge(next.mapped());
-    ++partial_.blocks;
-    --handed_out_;
-    if (!is_last) continue;
-    complete.push_back(
-        {partial_.chunk, std::exchange(partial_.merged, {}), std::move(whole_blocks)});
-    partial_.blocks = 0;
-    ++partial_.chunk;
+    if (auto chunk = MergeNext(next.mapped())) complete.push_back(*std::move(chunk));
   }
   return complete;
+}
+
+std::optional<ChunkResult> ChunkFold::MergeNext(const BlockResult& block) {
+  const bool is_last = partial_.blocks + 1 == plan_.BlocksIn(partial_.chunk);
+  PartialChunk whole_blocks;
+  if (is_last && partial_.chunk >= plan_.FirstCutChunk()) whole_blocks = partial_;
+  partial_.merged.Merge(block);
+  ++partial_.blocks;
+  --handed_out_;
+  if (!is_last) return std::nullopt;
+  PartialChunk merged = std::exchange(partial_, {.chunk = partial_.chunk + 1});
+  return ChunkResult{merged.chunk, std::move(merged.merged), std::move(whole_blocks)};
 }
 
 }  // namespace ballpiston

@@ -70,6 +70,7 @@ class ChunkFold {
   const GroupState& StartOf(uint64_t chunk) const { return groups_[chunk % plan_.groups()]; }
 
   Place NextPlace() const { return {partial_.chunk, partial_.blocks}; }
+  std::optional<ChunkResult> MergeNext(const BlockResult& block);  // the chunk that it completes
 
   ChunkPlan plan_;
   uint64_t end_;

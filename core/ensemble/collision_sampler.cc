@@ -29,46 +29,41 @@ std::optional<std::vector<CollisionRecord>> CollisionSampler::NextRecords() {
   if (!IsReady()) run_->Advance();
   if (HasEnded()) return std::nullopt;
   if (!IsReady()) return std::vector<CollisionRecord>();
-  OpenBlock done = std::move(open_.front());
+  Part done = std::move(open_.front());
   open_.pop_front();
   open_samples_ -= done.block.samples;
   return InOrder(std::move(done));
 }
 
-std::vector<CollisionRecord> CollisionSampler::InOrder(OpenBlock open) const {
-  std::ranges::stable_sort(open.records, {}, &OfOrbit::orbit);
+std::vector<CollisionRecord> CollisionSampler::InOrder(Part part) const {
+  std::ranges::stable_sort(part.records, {}, &OfOrbit::orbit);
   std::vector<CollisionRecord> records;
-  records.reserve(open.records.size());
-  for (const auto& [orbit, found] : open.records) {
-    const bool goes_on = !records.empty() && orbit == open.records[records.size() - 1].orbit;
+  records.reserve(part.records.size());
+  for (const auto& [orbit, found] : part.records) {
+    const bool goes_on = !records.empty() && orbit == part.records[records.size() - 1].orbit;
     CollisionRecord record = found;
-    record.sample = open.block.first + (CountsOrbits() ? orbit : records.size());
+    record.sample = part.block.first + (CountsOrbits() ? orbit : records.size());
     record.time = record.free_time + (goes_on ? records.back().time : 0);
     records.push_back(record);
   }
   return records;
 }
 
-CollisionSampler::OpenBlock& CollisionSampler::Find(const Block& block) {
-  return *std::ranges::find(open_, block, &OpenBlock::block);
+CollisionSampler::Part& CollisionSampler::Find(const Block& block) {
+  return *std::ranges::find(open_, block, &Part::block);
 }
 
 std::optional<Block> CollisionSampler::Next() {
-  const ChunkPlan& plan = experiment_.plan();
-  if (chunk_ == plan.chunks()) return std::nullopt;
-  Block part = plan.BlockAt(chunk_, index_);
-  part.first += in_block_;
-  part.samples -= in_block_;
+  if (rest_.samples == 0) {
+    if (!HasBlock()) return std::nullopt;
+    rest_ = experiment_.plan().BlockAt(chunk_, index_);
+    if (++index_ == experiment_.plan().BlocksIn(chunk_)) ++chunk_, index_ = 0;
+  }
+  Block part = rest_;
   if (CountsOrbits()) part.samples = std::min(part.samples, most_in_a_part_);
   if (open_samples_ + part.samples > 4 * most_in_a_part_ && !open_.empty()) return std::nullopt;
-  in_block_ += part.samples;
-  if (in_block_ == plan.BlockAt(chunk_, index_).samples) {
-    in_block_ = 0;
-    if (++index_ == plan.BlocksIn(chunk_)) {
-      ++chunk_;
-      index_ = 0;
-    }
-  }
+  rest_.first += part.samples;
+  rest_.samples -= part.samples;
   open_.push_back({part});
   open_samples_ += part.samples;
   return part;

@@ -44,17 +44,19 @@ class CollisionSampler : private BlockQueue, private CollisionObserver {
     uint64_t orbit = 0;  // within its block
     CollisionRecord record = {};
   };
-  struct OpenBlock {
+  // A part of a block, as a block of its own.
+  struct Part {
     Block block;
     std::vector<OfOrbit> records = {};
     bool is_done = false;
   };
 
-  OpenBlock& Find(const Block& block);
-  std::vector<CollisionRecord> InOrder(OpenBlock open) const;
+  Part& Find(const Block& block);
+  std::vector<CollisionRecord> InOrder(Part part) const;
 
   bool CountsOrbits() const { return collisions_ > 1; }
-  bool HasEnded() const { return open_.empty() && chunk_ == experiment_.plan().chunks(); }
+  bool HasBlock() const { return chunk_ < experiment_.plan().chunks(); }
+  bool HasEnded() const { return open_.empty() && rest_.samples == 0 && !HasBlock(); }
   bool IsReady() const { return !open_.empty() && open_.front().is_done; }
 
   std::optional<Block> Next() override;
@@ -67,9 +69,10 @@ class CollisionSampler : private BlockQueue, private CollisionObserver {
   const double collisions_;  // of a sample, at least 1
   const uint64_t most_in_a_part_;
   const std::function<bool()> pause_;
-  std::deque<OpenBlock> open_;  // in order
+  std::deque<Part> open_;  // in order
   uint64_t open_samples_ = 0;
-  uint64_t chunk_ = 0, index_ = 0, in_block_ = 0;  // where the next part begins
+  Block rest_ = {};                 // of the block whose parts are being handed out
+  uint64_t chunk_ = 0, index_ = 0;  // of the block after it
   std::unique_ptr<EngineRun> run_;
 };
 

@@ -1,6 +1,8 @@
 // The ladder of models, and the precision of the billiard's lanes.
 #pragma once
 
+#include <cstddef>
+
 #include "absl/strings/string_view.h"
 
 namespace ballpiston {
@@ -31,23 +33,11 @@ constexpr bool TakesSamples(Model model) {
 // The model itself; for AUTO the billiard, which answers every experiment by samples.
 constexpr Model Sampled(Model model) { return model == Model::kAuto ? Model::kBilliard : model; }
 
-// Names as users write them, e.g. "billiard_reference".
+// Names as users write them, in the order of the enumeration.
 constexpr absl::string_view Name(Model model) {
-  switch (model) {
-    case Model::kAuto:
-      return "auto";
-    case Model::kClosedForm:
-      return "closed_form";
-    case Model::kSpectrum:
-      return "spectrum";
-    case Model::kMarkov:
-      return "markov";
-    case Model::kBilliard:
-      return "billiard";
-    case Model::kBilliardReference:
-      return "billiard_reference";
-  }
-  return "unknown";
+  constexpr absl::string_view kNames[] = {"auto",   "closed_form", "spectrum",
+                                          "markov", "billiard",    "billiard_reference"};
+  return kNames[static_cast<size_t>(model)];
 }
 
 constexpr absl::string_view Name(Precision precision) {

@@ -222,20 +222,18 @@ class GasConduction : public SteadyGas {
     summary.samples = StretchesOf(groups);
     if (groups.empty()) {
       summary.estimates.clear();
-      summary.remarks.push_back(RemarkOnUnmeasured(groups));
+      summary.remarks = {RemarkOnUnmeasured(groups)};
       return;
     }
     AddEstimates(groups, summary.estimates);
     summary.curves.push_back(Profile(groups));
     for (const Order& order : StatedOrders()) {
-      if (Curve curve = CumulantsByWindow(order, groups); !curve.points.empty()) {
-        summary.curves.push_back(std::move(curve));
-      }
+      summary.curves.push_back(CumulantsByWindow(order, groups));
     }
-    for (std::string remark : {RemarkOnUnmeasured(groups), RemarkOnWarmUp(groups),
-                               RemarkOnErrors(groups), RemarkOnOrders()}) {
-      if (!remark.empty()) summary.remarks.push_back(std::move(remark));
-    }
+    std::erase_if(summary.curves, [](const Curve& curve) { return curve.points.empty(); });
+    summary.remarks = {RemarkOnUnmeasured(groups), RemarkOnWarmUp(groups), RemarkOnErrors(groups),
+                       RemarkOnOrders()};
+    std::erase(summary.remarks, "");
   }
 
  private:

@@ -109,14 +109,8 @@ GasExperiment::GasExperiment(const EnsembleSpec& spec, const PointParameters& po
       temperature_(temperature) {}
 
 GasEngine GasExperiment::gas_engine() const {
-  switch (answer().model) {
-    case Model::kMarkov:
-      return GasEngine::kJumps;
-    case Model::kBilliardReference:
-      return GasEngine::kReference;
-    default:
-      return GasEngine::kLanes;
-  }
+  if (answer().model == Model::kMarkov) return GasEngine::kJumps;
+  return engine() == Engine::kReference ? GasEngine::kReference : GasEngine::kLanes;
 }
 
 }  // namespace ballpiston

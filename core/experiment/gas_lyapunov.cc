@@ -130,9 +130,8 @@ bool IsRounded(size_t k, const GasGeometry& geometry) {
 std::vector<Measurement> Table(const GasGeometry& geometry, double temperature) {
   const double scale = std::sqrt(temperature);
   const auto exponent = [&](size_t k) {
-    const double events = IsRounded(k, geometry) ? 0 : 1;
-    return Measurement{absl::StrCat("lyapunov_", k + 1), RatioAt(kFirstExponent + k, events),
-                       scale};
+    const Reading reading = RatioAt(kFirstExponent + k, IsRounded(k, geometry) ? 0 : 1);
+    return Measurement{absl::StrCat("lyapunov_", k + 1), reading, scale};
   };
   std::vector<Measurement> table = {
       exponent(0),

@@ -25,11 +25,7 @@ class GroupRun : public EngineRun {
 
   bool Advance() override {
     do {
-      if (!block_) {
-        block_ = queue_.Next();
-        if (!block_) return true;
-        Begin();
-      }
+      if (!block_ && !Begin()) return true;
       if (!run_->AdvanceToward((stretches_ + 1) * experiment_.stretch())) continue;
       EndStretch();
       if (stretches_ < StretchesOfBlock()) {
@@ -53,7 +49,10 @@ class GroupRun : public EngineRun {
     return experiment_.RandomOf(block_->chunk * experiment_.shape().trajectories + trajectory);
   }
 
-  void Begin() {
+  // Returns false if the queue has no block.
+  bool Begin() {
+    block_ = queue_.Next();
+    if (!block_) return false;
     const SteadyShape& shape = experiment_.shape();
     const bool is_first = block_->start.empty();
     group_ = is_first ? shape.NewGroup() : shape.Read(block_->start);
@@ -61,6 +60,7 @@ class GroupRun : public EngineRun {
     stretches_ = 0;
     is_measuring_ = group_.measured > 0 || (group_.stretches >= WarmUp() && JudgeWarmUp());
     Start();
+    return true;
   }
 
   void DrawStarts() {

@@ -72,20 +72,11 @@ GasTangents::GasTangents(double rho, const GasState& start, const std::vector<Ve
 
 void GasTangents::Follow(const GasEvent& event, const GasBall& after) {
   Move(event);
-  switch (event.kind) {
-    case EventKind::kBallWall:
-      ReflectBall(event.ball, after);
-      if (++hits_ >= kHitsOfABallTogether * directions_.size()) Orthonormalise(event.time);
-      break;
-    case EventKind::kPistonWall:
-      OfPiston(event.piston).ChangeSigns();
-      break;
-    case EventKind::kBallPiston:
-      Exchange(event, after);
-      break;
-    case EventKind::kEscape:
-      break;
-  }
+  if (event.kind == EventKind::kPistonWall) OfPiston(event.piston).ChangeSigns();
+  if (event.kind == EventKind::kBallPiston) Exchange(event, after);
+  if (event.kind != EventKind::kBallWall) return;
+  ReflectBall(event.ball, after);
+  if (++hits_ >= kHitsOfABallTogether * directions_.size()) Orthonormalise(event.time);
 }
 
 std::vector<double> GasTangents::TakeGrowth(double time) {

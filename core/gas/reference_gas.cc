@@ -36,14 +36,13 @@ ReferenceGas::ReferenceGas(const GasGeometry& geometry, const GasState& state, T
 GasEvent ReferenceGas::Step() {
   if (++events_ > kEventsFromAnOrigin * (balls_.size() + pistons_.size())) MoveOrigin();
   now_ = queue_.First().time;
-  const size_t body = queue_.First().body;
+  const int64_t body = queue_.First().body, balls = std::ssize(balls_);
   GasEvent event;
-  if (body >= balls_.size()) {
-    event = TurnPiston(static_cast<int64_t>(body - balls_.size()));
+  if (body >= balls) {
+    event = TurnPiston(body - balls);
   } else {
-    const Ball& ball = balls_[body];
-    const auto number = static_cast<int64_t>(body);
-    event = ball.CollisionTime() <= ball.wall_time ? Exchange(number) : HitWall(number);
+    const Ball& ball = balls_[Index(body)];
+    event = ball.CollisionTime() <= ball.wall_time ? Exchange(body) : HitWall(body);
   }
   event.time = origin_ + now_;
   return event;

@@ -99,9 +99,7 @@ class TraceOf final : public Trace {
     if (!event) return std::nullopt;
     const double time = event->time;
     const int64_t ball = event->ball, piston = event->piston;
-    TraceEvent traced;
-    traced.kind = event->kind;
-    traced.time = time;
+    TraceEvent traced = {.kind = event->kind, .time = time};
     const auto [last, is_first] =
         last_.try_emplace({event->kind, ball, piston, event->direction}, time);
     if (!is_first) traced.free_time = time - std::exchange(last->second, time);

@@ -47,10 +47,10 @@ struct TracedChange {
 
 struct TraceEvent {
   EventKind kind = EventKind::kEscape;
-  double time = 0;                  // since the start
-  std::optional<double> free_time;  // empty at the first event of its kind with these bodies
-  std::optional<TracedChange> ball;
-  std::optional<TracedChange> piston;
+  double time = 0;                       // since the start
+  std::optional<double> free_time = {};  // empty at the first event of its kind with these bodies
+  std::optional<TracedChange> ball = {};
+  std::optional<TracedChange> piston = {};
 };
 
 class Trace {

@@ -49,8 +49,7 @@ def specification(
     most 100,000 points.
 
     Args:
-        experiment: "equilibrium", "conditional-mean-free-time", "first-hit", "energy-relaxation",
-            "markov-property", "lyapunov", "gas-equilibrium", "gas-conduction" or "gas-lyapunov".
+        experiment: its name, such as "first-hit"; the error of a wrong name lists all.
         rho: radius of the discs; 1/2 < rho < 1/sqrt(2).
         delta: how far the piston reaches into the cell; 0 < delta <= (1 - sqrt(4 rho^2 - 1))/2.
         epsilon: energy of the piston; 0 to 1/2.
@@ -69,10 +68,8 @@ def specification(
         budget: seconds of computing with all workers, for the whole grid; with a tolerance the job
             fails if some point does not reach it. Of samples, collisions, tolerance and budget give
             at most one, or tolerance and budget together.
-        estimate: the estimate that the tolerance refers to; "gas-equilibrium" has a choice between
-            "exchange_rate" and "conductivity", "lyapunov" between "lyapunov_1", "lyapunov_2",
-            "entropy", "lyapunov_1_per_collision" and "lyapunov_2_per_collision", and
-            "gas-lyapunov" between "lyapunov_1" and "entropy_per_ball".
+        estimate: the estimate that the tolerance refers to, such as "conductivity"; the server's
+            error of a wrong name lists those that the experiment permits.
         seed: of the random numbers; 0 to 2^64 - 1. The same question and seed give the same
             numbers.
         model: "auto", "closed-form", "spectrum", "markov", "billiard" or "billiard-reference".
