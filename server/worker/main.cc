@@ -25,7 +25,7 @@
 #include "absl/time/time.h"
 #include "core/engine_version.h"
 #include "server/fatal_signals.h"
-#include "server/machine_memory.h"
+#include "server/machine_limits.h"
 #include "server/worker/worker.h"
 
 namespace ballpiston::server {
