@@ -1,7 +1,6 @@
 // ballpistond: starts the server, waits for a signal or for idleness, stops it.
 #include <signal.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <time.h>
 
 #include <chrono>
@@ -20,6 +19,7 @@
 #include "server/compute/crash_record.h"
 #include "server/door/new_token.h"
 #include "server/fatal_signals.h"
+#include "server/process_start.h"
 #include "server/status/failpoint.h"
 #include "server/status/log.h"
 #include "server/store/backup.h"
@@ -126,8 +126,7 @@ std::string StoreIn(const CommandLine& line) {
 }
 
 int Main(int argc, char** argv) {
-  umask(0077);               // only the server's user can use store and socket
-  signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is an error like a full disk
+  StartProcess();
   if (std::getenv("GRPC_VERBOSITY") == nullptr) gpr_set_log_function(&LogEndOfListening);
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());

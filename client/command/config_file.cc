@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/command/suggestion.h"
+#include "client/library/local_server.h"
 #include "client/library/quoted.h"
 
 namespace ballpiston::client {
@@ -54,7 +55,7 @@ std::string FromEnvironment(const std::string& variable) {
 
 std::string UsualConfig() {
   std::string folder = FromEnvironment("XDG_CONFIG_HOME");
-  if (folder.empty() || folder[0] != '/') folder = FromEnvironment("HOME") + "/.config";
+  if (folder.empty() || folder[0] != '/') folder = HomeFolder() + "/.config";
   std::error_code error;
   const std::string path = folder + "/ballpiston/config.toml";
   return std::filesystem::exists(path, error) ? path : "";

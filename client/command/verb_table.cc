@@ -339,7 +339,8 @@ const FlagGroup kStart = {"Settings",
                           {{"--listen", Passed("ADDRESS", "--listen"),
                             "unix:PATH or host:port; by default a socket in the data folder"},
                            {"--workers", Passed("N", "--workers"),
-                            "number of threads that compute; by default one for each core"}}};
+                            "number of threads that compute; by default one for each core that the "
+                            "affinity and the control group (cgroup) permit"}}};
 
 const FlagGroup kToken = {
     "Access",

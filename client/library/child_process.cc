@@ -31,7 +31,7 @@ void SetSignalsAndGroup(const ChildProcess& child, posix_spawnattr_t* attributes
   sigset_t signals;
   sigemptyset(&signals);
   posix_spawnattr_setsigmask(attributes, &signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) sigaddset(&signals, signal);
+  for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ, SIGCHLD}) sigaddset(&signals, signal);
   posix_spawnattr_setsigdefault(attributes, &signals);
   int flags = POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF;
   if (child.detached) flags |= POSIX_SPAWN_SETSID;

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
@@ -37,12 +38,6 @@ std::string PathVariable(const char* name) {
   return value != nullptr && value[0] == '/' ? value : "";
 }
 
-std::string HomeFolder() {
-  if (std::string home = PathVariable("HOME"); !home.empty()) return home;
-  const passwd* user = getpwuid(getuid());
-  return user != nullptr ? user->pw_dir : "";
-}
-
 // Another user may have made the folder. Whoever owns it or can write to it can replace the socket.
 // `for_others`: the rights that others must not have.
 absl::Status CheckPrivate(const std::string& folder, mode_t for_others) {
@@ -61,18 +56,17 @@ absl::Status CheckPrivate(const std::string& folder, mode_t for_others) {
       is_own ? "run chmod 700 " + folder : "remove it"));
 }
 
+// Makes the folder and those above it, each for its owner only. False: an error, which is in errno.
+bool MakeFolders(const fs::path& folder) {
+  const auto exists = [&] { return mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST; };
+  return exists() || (errno == ENOENT && folder.has_relative_path() &&
+                      MakeFolders(folder.parent_path()) && exists());
+}
+
 absl::Status MakeFolder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(fs::path(folder).parent_path(), error);
-  if (!error && mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) {
-    error.assign(errno, std::generic_category());
-  }
-  if (!error && access(folder.c_str(), W_OK | X_OK) != 0) {
-    error.assign(errno, std::generic_category());
-  }
-  if (!error) return absl::OkStatus();
+  if (MakeFolders(folder) && access(folder.c_str(), W_OK | X_OK) == 0) return absl::OkStatus();
   return absl::PermissionDeniedError(
-      absl::StrCat("the private server needs the folder ", folder, ": ", error.message(),
+      absl::StrCat("the private server needs the folder ", folder, ": ", std::strerror(errno),
                    " (name a server with --server, or another folder with XDG_STATE_HOME)"));
 }
 
@@ -134,6 +128,12 @@ absl::Status Start(const LocalServer& server, grpc::Channel& channel) {
 }
 
 }  // namespace
+
+std::string HomeFolder() {
+  if (std::string home = PathVariable("HOME"); !home.empty()) return home;
+  const passwd* user = getpwuid(getuid());
+  return user != nullptr ? user->pw_dir : "";
+}
 
 std::string StateFolder() {
   if (std::string state = PathVariable("XDG_STATE_HOME"); !state.empty()) {

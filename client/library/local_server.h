@@ -32,6 +32,9 @@ struct LocalServer {
   std::string Address() const { return "unix:" + socket; }
 };
 
+// HOME if it is an absolute path, else the home in the user's entry of the system; empty: neither.
+std::string HomeFolder();
+
 // $XDG_STATE_HOME/ballpiston or ~/.local/state/ballpiston: what this user's servers keep.
 std::string StateFolder();
 

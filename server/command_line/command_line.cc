@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <istream>
 #include <memory>
-#include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -18,7 +17,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
-#include "server/machine_memory.h"
+#include "server/machine_limits.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
@@ -162,7 +161,9 @@ void AddServerFlags(CLI::App& app, CommandLine& line) {
   AddText(app, "--data-dir,--data_dir", line.server.data_dir, "DIR",
           "folder of jobs and results, created if it does not exist; one server at a time uses it")
       ->capture_default_str();
-  AddNumber(app, "--workers", line.server.workers, 1, kMostWorkers, "threads that compute");
+  AddNumber(app, "--workers", line.server.workers, 1, kMostWorkers,
+            "threads that compute; by default one for each core that the affinity and the control\n"
+            "group (cgroup) of this process permit");
   AddWord(app, "--device", line.server.device, {kProcessor, kGpu},
           "what computes the flights of pairs for these threads; results do not depend on it. gpu\n"
           "needs a program that was built with CUDA, and a device");
@@ -332,8 +333,7 @@ absl::Status SetCluster(Words& words, CommandLine& line) {
 
 void SetDefaults(CommandLine& line) {
   constexpr double kShareOfMemory = 0.8;
-  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-  line.server.workers = std::clamp(cores, 1, kMostWorkers);
+  line.server.workers = std::min(MachineCores(), kMostWorkers);
   line.server.limits.max_memory_mib =
       static_cast<int64_t>(kShareOfMemory * MachineMemory() / (1 << 20));
 }

@@ -24,7 +24,7 @@
 #include <set>
 #include <string>
 
-#include "server/machine_memory.h"
+#include "server/machine_limits.h"
 #include "server/mutex.h"
 
 namespace ballpiston::server {

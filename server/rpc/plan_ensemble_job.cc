@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <thread>
 
 #include "server/convert/errors.h"
 #include "server/convert/plan.h"
 #include "server/convert/spec.h"
+#include "server/machine_limits.h"
 #include "server/rpc/methods.h"
 
 namespace ballpiston::server {
@@ -31,7 +31,7 @@ struct PlannedWork {
 
   // Workers and the store's thread share the cores.
   double Time(int workers) const {
-    const double cores = std::max(1.0, static_cast<double>(std::thread::hardware_concurrency()));
+    static const double cores = MachineCores();
     return std::max({points / workers, stored, (points + stored) / cores, longest});
   }
 };

@@ -1,6 +1,7 @@
 #include "server/store/data_directory.h"
 
 #include <fcntl.h>
+#include <pwd.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -135,7 +136,10 @@ std::string DataDirectory::Default() {
   const char* state = std::getenv("XDG_STATE_HOME");
   if (state != nullptr && *state == '/') return absl::StrCat(state, "/ballpiston");
   const char* home = std::getenv("HOME");
-  return absl::StrCat(home == nullptr ? "" : home, "/.local/state/ballpiston");
+  const bool is_absolute = home != nullptr && *home == '/';
+  const passwd* user = is_absolute ? nullptr : getpwuid(getuid());
+  if (!is_absolute) home = user == nullptr ? "" : user->pw_dir;
+  return absl::StrCat(home, "/.local/state/ballpiston");
 }
 
 absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {

@@ -41,7 +41,8 @@ class DataDirectory {
   //                        and it has files but no store, is another user's, or is shared (/tmp)
   static absl::StatusOr<DataDirectory> Open(const std::string& path);
 
-  // $XDG_STATE_HOME/ballpiston, or ~/.local/state/ballpiston.
+  // $XDG_STATE_HOME/ballpiston, or ~/.local/state/ballpiston. The home is HOME if it is an
+  // absolute path, else that of the user's entry of the system.
   static std::string Default();
 
   DataDirectory(DataDirectory&& other) noexcept;

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -25,7 +24,8 @@
 #include "absl/time/time.h"
 #include "core/engine_version.h"
 #include "server/fatal_signals.h"
-#include "server/machine_memory.h"
+#include "server/machine_limits.h"
+#include "server/process_start.h"
 #include "server/worker/worker.h"
 
 namespace ballpiston::server {
@@ -186,8 +186,7 @@ void AddFlags(CLI::App& app, CommandLine& line) {
 }
 
 int Main(int argc, char** argv) {
-  umask(0077);
-  signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is an error like a full disk
+  StartProcess();
   CommandLine line;
   line.worker.memory = WorkerMemory();
   line.worker.name = WorkerName(RandomBits());

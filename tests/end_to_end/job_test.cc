@@ -91,10 +91,27 @@ TEST_F(JobTest, AClosedPipeExitsWithZero) {
   AwaitThat([this] { return Streams() == 0; });
 }
 
-TEST_F(JobTest, AFullDiskIsAnError) {
-  const ProcessResult full = Bash("$client list >/dev/full");
-  EXPECT_THAT(full, ExitsWith(2));
-  EXPECT_THAT(full.err, HasSubstr("cannot write standard output: No space left"));
+TEST_F(JobTest, AFullDiskOrClosedOutputIsAnError) {
+  for (const auto& [out, why] : {std::pair(">/dev/full", "No space"), {">&-", "Bad file"}}) {
+    const ProcessResult full = Bash(absl::StrCat("$client list ", out));
+    EXPECT_THAT(full, ExitsWith(2));
+    EXPECT_THAT(full.err, HasSubstr(absl::StrCat("cannot write standard output: ", why)));
+  }
+}
+
+TEST_F(JobTest, ThePythonPackageRunsWhereTheParentIgnoresItsChildren) {
+  const std::string figure = " figure cell --out " + File("figure");
+  EXPECT_THAT(Bash("env --ignore-signal=CHLD $client" + figure), ExitsWith(0));
+}
+
+// No thread has room for such a stack.
+TEST_F(JobTest, AClientThatCannotStartAThreadSaysSo) {
+#if defined(__SANITIZE_ADDRESS__) || defined(_GLIBCXX_TSAN)
+  GTEST_SKIP() << "a sanitizer needs a stack of another size";
+#endif
+  const ProcessResult refused = Bash("ulimit -s 1000000000000; exec $client list");
+  EXPECT_THAT(refused, ExitsWith(3));
+  EXPECT_THAT(refused.err, HasSubstr("cannot start a thread: retry later"));
 }
 
 // gRPC refuses the request; the client recognises gRPC's words.

@@ -131,6 +131,15 @@ TEST_F(ServerTest, AServerInAFolderIsStartedCheckedCopiedAndStopped) {
   EXPECT_FALSE(fs::exists(home_.File("data/server.address")));
 }
 
+TEST_F(ServerTest, AServerWithoutStandardErrorCanBeStopped) {
+  ProcessOptions command = ServerCommand(home_, named_);
+  command.command.insert(command.command.begin(), {"sh", "-c", "exec \"$@\" 2>&-", "sh"});
+  const Process server(command);
+  AwaitThat([this] { return fs::exists(home_.File("data/server.address")); });
+  EXPECT_THAT(Server("stop", named_), ExitsWith(0));
+  EXPECT_EQ(Contents(home_.File("data/lock")), "");  // no log
+}
+
 // The lock file of a folder that another machine uses holds the number of a process of that
 // machine.
 TEST_F(ServerTest, StopIgnoresProcessesThatDoNotUseTheFolder) {

@@ -9,6 +9,7 @@ file and the Python modules that the file needs.
 """
 
 import json
+import os
 import re
 import signal
 import sys
@@ -44,7 +45,8 @@ def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str
         # Until here SIGTERM ends Python in silence, and SIGINT would print a traceback.
         signal.signal(signal.SIGTERM, signal.default_int_handler)
         for path in main(arguments):
-            print(path)
+            if sys.stdout is not None:  # None: it was closed at the start
+                sys.stdout.buffer.write(os.fsencode(path) + b"\n")  # in no encoding that lacks it
     except tuple(kind for kind, _ in _EXIT_CODES) as error:
         if not isinstance(error, KeyboardInterrupt):
             print(f"ballpiston: {_with_flags(error)}", file=sys.stderr)

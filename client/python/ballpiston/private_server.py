@@ -29,9 +29,13 @@ class PrivateServer:
         """Its address, unix:PATH. Starts the server if it does not run. Raises NoPrivateServer: the
         program cannot be run, or cannot start the server."""
         try:
-            command, nothing = [self.program, "server", "address"], subprocess.DEVNULL
             answer = subprocess.run(
-                command, stdin=nothing, capture_output=True, text=True, timeout=_START_TIME
+                [self.program, "server", "address"],
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                encoding="utf-8",  # gRPC's, whatever the locale's is
+                errors="replace",
+                timeout=_START_TIME,
             )
         except (OSError, subprocess.TimeoutExpired) as error:
             raise NoPrivateServer(f"cannot start the private server: {error}") from error

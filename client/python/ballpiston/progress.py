@@ -4,7 +4,7 @@ tqdm draws it if tqdm is installed. Where nobody looks, in a pipeline for instan
 """
 
 import json
-import shutil
+import os
 import sys
 import warnings
 from typing import Any
@@ -24,7 +24,7 @@ class Bar:
 
     def show(self, fraction: float, text: str) -> None:
         marks = int(min(max(fraction, 0.0), 1.0) * _BAR_WIDTH)
-        room = shutil.get_terminal_size().columns - 1  # a longer line would wrap
+        room = _columns() - 1  # a longer line would wrap
         line = f"[{'#' * marks}{'-' * (_BAR_WIDTH - marks)}] {text}"[:room]
         sys.stderr.write("\r" + line.ljust(self._width)[:room])
         sys.stderr.flush()
@@ -37,6 +37,14 @@ class Bar:
     def close(self) -> None:
         if self._width > 0:
             sys.stderr.write("\n")
+
+
+def _columns() -> int:
+    """Of the terminal at standard error."""
+    try:
+        return os.get_terminal_size(sys.stderr.fileno()).columns or 80
+    except (OSError, ValueError):  # no terminal, or no file
+        return 80
 
 
 class _TqdmBar(Bar):
@@ -129,9 +137,13 @@ def progress_on_screen(wanted: bool | str) -> Progress:
         raise ValueError(f"progress is {wanted!r}; permitted: auto, bar, json, none")
     if wanted == "json":
         return JsonLines()
-    is_terminal = sys.stderr is not None and sys.stderr.isatty()
-    is_seen = wanted in (True, "auto") and (is_terminal or _is_notebook())
+    is_seen = wanted in (True, "auto") and (has_terminal() or _is_notebook())
     return Progress(_new_bar() if is_seen or wanted == "bar" else None)
+
+
+def has_terminal() -> bool:
+    """Whether standard error is a terminal. It is None where it was closed at the start."""
+    return sys.stderr is not None and sys.stderr.isatty()
 
 
 def progress_in(message: Any) -> Any | None:

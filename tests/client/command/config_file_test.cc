@@ -13,6 +13,14 @@ class ConfigFileTest : public ::testing::Test {
   const EmptyHome home_;
 };
 
+TEST_F(ConfigFileTest, ARelativeHomeIsNotUsed) {
+  const std::string home = std::filesystem::relative(home_.File(""));
+  std::filesystem::create_directories(home + "/.config/ballpiston");
+  WriteFile(home + "/.config/ballpiston/config.toml", "");
+  const ScopedVariable config_home("XDG_CONFIG_HOME"), relative("HOME", home);
+  EXPECT_THAT(UsualConfig(), Not(StartsWith(home)));
+}
+
 // A flag with a variable, its values from the strongest source to the weakest, and what it sets.
 struct Ranked {
   std::string key;

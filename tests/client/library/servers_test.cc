@@ -202,10 +202,13 @@ class LocalServerTest : public ::testing::Test {
 };
 
 TEST_F(LocalServerTest, IsInTheStateFolderOfTheUser) {
+  const mode_t before = umask(0);
   ASSERT_OK_AND_ASSIGN(const LocalServer server, FindLocalServer());
+  umask(before);
   EXPECT_EQ(server.folder, home_.string() + "/.local/state/ballpiston");
   EXPECT_EQ(server.socket, server.folder + "/server.socket");
   EXPECT_EQ(ModeOf(server.folder), 0700u);
+  EXPECT_EQ(ModeOf(home_ / ".local"), 0700u);
 }
 
 TEST_F(LocalServerTest, FollowsXdgStateHome) {

@@ -196,6 +196,19 @@ def test_no_program_and_no_server_says_what_to_install(
         find_private_server()
 
 
+def test_the_private_servers_address_is_utf_8_in_every_locale(home: Home, tmp_path: Path) -> None:
+    script = tmp_path / "ballpiston"
+    script.write_bytes("#!/bin/sh\necho unix:/ü/s\n".encode())
+    script.chmod(0o700)
+    program = (
+        "import sys; from ballpiston.private_server import PrivateServer\n"
+        "print(ascii(PrivateServer(sys.argv[1]).address()))"
+    )
+    ascii_only = os.environ | {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    reader = home.python(program, str(script), env=ascii_only)
+    assert reader.communicate(timeout=LIMIT) == ("'unix:/\\xfc/s'\n", "")
+
+
 @pytest.mark.parametrize("timeout", [0, -3, float("nan"), "3"])
 def test_a_time_limit_is_above_0(timeout: Any) -> None:
     with pytest.raises((TypeError, ValueError), match="^timeout "):

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import matplotlib
 import numpy as np
 import pytest
 
@@ -302,8 +303,9 @@ def test_the_same_picture_gives_the_same_file(tmp_path: Path) -> None:
     data["cell-3d"] |= {"lambda": np.array([0.83]), "eta": np.array([0.1])}
     module = importlib.import_module("ballpiston.figures.cell_3d")
     files = [tmp_path / "a.svg", tmp_path / "b.svg"]
-    for file in files:
-        style.save(module.draw(data), file)
+    for file, box in zip(files, ("standard", "tight")):
+        with matplotlib.rc_context({"savefig.bbox": box}):  # of a matplotlibrc
+            style.save(module.draw(data), file)
     assert files[0].read_bytes() == files[1].read_bytes()
     assert b"heights drawn" in files[0].read_bytes()
 

@@ -117,6 +117,17 @@ def test_sigterm_interrupts_a_program_without_a_traceback(home: Home) -> None:
     assert interrupted.returncode == 130
 
 
+def test_a_program_prints_names_of_files_that_its_encoding_cannot_spell(home: Home) -> None:
+    program = (
+        "import sys\n"
+        "from pathlib import Path\n"
+        "from ballpiston.command import run_program\n"
+        "sys.exit(run_program(lambda _: [Path('\\xfc')], []))"
+    )
+    printer = home.python(program, env=os.environ | {"PYTHONIOENCODING": "ascii"})
+    assert printer.communicate(timeout=LIMIT) == ("ü\n", "")
+
+
 def test_an_archive_has_the_arrays_of_the_result(
     first_hits: ballpiston.Result, tmp_path: Path
 ) -> None:

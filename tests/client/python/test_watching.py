@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import termios
 import threading
 import time
 from pathlib import Path
@@ -15,7 +16,7 @@ from conftest import ENDLESS, FIRST_HITS, LIMIT, Home, wait_until
 
 import ballpiston
 from ballpiston.errors import ResourceExhausted, Unavailable
-from ballpiston.progress import Bar, Progress, _TqdmBar
+from ballpiston.progress import Bar, Progress, _TqdmBar, has_terminal
 from ballpiston.v1 import ensemble_pb2
 from ballpiston.watch import Attachments, ReattachPace, watch_job
 
@@ -182,15 +183,19 @@ def test_a_bar_shows_points_an_estimate_and_lost_connections() -> None:
     ]
 
 
-def test_a_bar_is_shorter_than_a_line_of_the_terminal(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_bar_is_shorter_than_a_line_of_the_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     bar = Bar()
-    for columns in ("60", "30"):
-        monkeypatch.setenv("COLUMNS", columns)
-        bar.show(0.5, "4/4 points" + 80 * ".")
-    _, wide, narrow = capsys.readouterr().err.split("\r")
-    assert (len(wide), len(narrow)) == (59, 29)
+    here, there = os.openpty()
+    with open(there, "w") as terminal:
+        monkeypatch.setattr("sys.stderr", terminal)
+        for columns in (60, 30, 0):  # 0: unknown
+            termios.tcsetwinsize(there, (24, columns))
+            bar.show(0.5, "4/4 points" + 80 * ".")
+        lines = os.read(here, 4096).decode().split("\r")
+    os.close(here)
+    assert [len(line) for line in lines] == [0, 59, 29, 79]
+    monkeypatch.setattr("sys.stderr", None)
+    assert not has_terminal()
 
 
 def test_the_time_left_does_not_count_the_time_in_the_queue(

@@ -1,8 +1,11 @@
 #include "server/store/data_directory.h"
 
+#include <pwd.h>
+
 #include "absl/cleanup/cleanup.h"
 #include "server/store/folder_sync.h"
 #include "tests/support/preamble.h"
+#include "tests/support/scoped_variable.h"
 
 namespace ballpiston::server {
 namespace {
@@ -43,6 +46,12 @@ TEST_F(DataFolder, AFileOfAnotherProgramNamedLockIsUnchanged) {
     EXPECT_OK(DataDirectory::Open(path_));
     EXPECT_EQ(Contents(path_ + "/lock"), text);
   }
+}
+
+TEST(DefaultDataFolder, IsInTheHomeOfTheUsersEntryIfHomeIsNotAnAbsolutePath) {
+  const ScopedVariable state("XDG_STATE_HOME"), home("HOME", "relative");
+  const std::string expected = getpwuid(getuid())->pw_dir + std::string("/.local/state/ballpiston");
+  EXPECT_EQ(DataDirectory::Default(), expected);
 }
 
 TEST_F(DataFolder, ANewFolderHasMode0700WhateverTheMask) {

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import os
 import re
-import sys
 from typing import Any
 
 from matplotlib.colors import LinearSegmentedColormap, LogNorm
@@ -23,6 +22,7 @@ from matplotlib.patches import Rectangle
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.programs import output_of
 from ballpiston.figures.parts.tables import Table, Tables, distinct, rows, table
+from ballpiston.progress import has_terminal
 
 EFFORT: dict[str, dict[str, Any]] = {"quick": {}, "full": {"all_starts": True}}
 
@@ -58,7 +58,7 @@ _LINE = 25  # height of a line, in pixels
 def measure(*, all_starts: bool = False) -> Tables:
     """The counts of all situations and methods, and in `failures` the sum of all kinds."""
     arguments = [] if all_starts else ["--quick"]
-    quiet = os.environ.get("BALLPISTON_PROGRESS") in ("none", "json") or not sys.stderr.isatty()
+    quiet = os.environ.get("BALLPISTON_PROGRESS") in ("none", "json") or not has_terminal()
     return {"stability": counts(output_of("stability", *arguments, quiet=quiet))}
 
 

@@ -35,11 +35,11 @@ _SHEET = Path(__file__).with_name("ballpiston.mplstyle")
 
 
 def styled(draw: Callable[[Tables], Figure]) -> Callable[[Tables], Figure]:
-    """Lets a function draw in the style of all pictures."""
+    """Lets a function draw in the style of all pictures, without the user's matplotlibrc."""
 
     @functools.wraps(draw)
     def in_style(tables: Tables) -> Figure:
-        with matplotlib.style.context(_SHEET):
+        with matplotlib.style.context(_SHEET, after_reset=True):
             return draw(tables)
 
     return in_style
@@ -50,7 +50,7 @@ def save(figure: Figure, path: Path) -> None:
     leaves the old file."""
     ending = path.suffix.removeprefix(".")
     buffer = io.BytesIO()
-    with matplotlib.style.context(_SHEET):
+    with matplotlib.style.context(_SHEET, after_reset=True):
         metadata = {"Date": None} if ending == "svg" else {}
         figure.savefig(buffer, format=ending, metadata=metadata)
     write_atomically(path, buffer.getvalue())

@@ -1,5 +1,5 @@
-// The memory that this process can use, and the kernel's kills for want of it: of the process's
-// control group (cgroup version 1 or 2), and of the machine.
+// The memory and the cores that this process can use, and the kernel's kills for want of memory: of
+// the process's control group (cgroup version 1 or 2), and of the machine.
 #pragma once
 
 #include <cstdint>
@@ -19,5 +19,9 @@ OutOfMemoryKills ReadOutOfMemoryKills(const std::string& root = "");
 
 // Bytes of memory, at most the limits of the group and of those that contain it.
 double MachineMemory(const std::string& root = "");
+
+// Number of cores in this thread's affinity mask, at most the quotas of the group and of those that
+// contain it, rounded up. At least 1.
+int MachineCores(const std::string& root = "");
 
 }  // namespace ballpiston::server
