@@ -16,7 +16,7 @@ namespace {
 // answer. CANCELLED if it is not y or yes.
 absl::Status Confirm(const std::string& action, const std::vector<std::string>& names,
                      const Options& options, const Terminal& terminal) {
-  if (options.labels.empty() || options.yes) return absl::OkStatus();
+  if (!options.jobs.empty() || options.yes) return absl::OkStatus();
   terminal.err << action << ' ' << Counted(static_cast<double>(names.size()), "job") << "? [y/N] "
                << std::flush;
   std::string answer;

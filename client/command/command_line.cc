@@ -198,7 +198,7 @@ absl::Status CheckRequired(const Verb& verb, const Settings& settings) {
   return absl::OkStatus();
 }
 
-// The last argument reads all further words.
+// The last argument reads all further words, and those of a repeatable value together.
 absl::Status ReadArguments(const Verb& verb, const std::vector<std::string>& words,
                            Options& options) {
   if (verb.passes_words_on) {
@@ -207,7 +207,9 @@ absl::Status ReadArguments(const Verb& verb, const std::vector<std::string>& wor
   }
   for (size_t i = 0; i < words.size(); ++i) {
     const Value& value = verb.arguments[std::min(i, verb.arguments.size() - 1)].value;
-    absl::Status status = Named(value.name, value.read(words[i], options));
+    std::string text = words[i];
+    while (value.is_repeatable && i + 1 < words.size()) absl::StrAppend(&text, ",", words[++i]);
+    absl::Status status = Named(value.name, value.read(text, options));
     if (!status.ok()) return status;
   }
   return absl::OkStatus();
@@ -232,24 +234,24 @@ std::string FlagNamed(absl::string_view field) {
   return absl::StrCat("--", absl::StrReplaceAll(last.substr(0, last.find('[')), {{"_", "-"}}));
 }
 
-// "points.csv, row 3 below the header" for grid.delta[2], unless the command line has the flag of
-// that list.
-std::optional<std::string> RowOfPoint(absl::string_view field, const Options& options) {
+// "points.csv, row 3 below the header" for grid.delta[2], and "points.csv, column delta" for
+// grid.delta, unless the command line has the flag of that list.
+std::optional<std::string> PlaceInPoints(absl::string_view field, const Options& options) {
   const bool has_flag = options.given.contains(FlagNamed(field));
-  size_t row = 0;
-  if (options.points_file.empty() || has_flag || !absl::ConsumePrefix(&field, "spec.grid.") ||
-      !absl::ConsumeSuffix(&field, "]") ||
-      !absl::SimpleAtoi(field.substr(field.find('[') + 1), &row)) {
+  if (options.points_file.empty() || has_flag || !absl::ConsumePrefix(&field, "spec.grid.")) {
     return std::nullopt;
   }
-  const std::string& path = options.points_file;
-  return absl::StrCat(path == "-" ? "standard input" : path, ", row ", row + 1,
-                      " below the header");
+  const std::string path = options.points_file == "-" ? "standard input" : options.points_file;
+  size_t row = 0;
+  const bool has_row =
+      absl::ConsumeSuffix(&field, "]") && absl::SimpleAtoi(field.substr(field.find('[') + 1), &row);
+  return has_row ? absl::StrCat(path, ", row ", row + 1, " below the header")
+                 : absl::StrCat(path, ", column ", field);
 }
 
 std::string NameOfField(const std::string& field, const Verb& verb, const Options& options) {
   if (field == "spec.experiment") return "EXPERIMENT";
-  if (const auto line = RowOfPoint(field, options)) return *line;
+  if (const auto place = PlaceInPoints(field, options)) return *place;
   const std::string name = FlagNamed(field);
   const std::vector<const Flag*> flags = FlagsOf(verb);
   const bool is_flag = std::any_of(flags.begin(), flags.end(),

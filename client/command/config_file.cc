@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <vector>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/command/suggestion.h"
@@ -46,6 +49,27 @@ absl::Status CheckKey(const std::string& section, const std::string& key) {
                                                  DidYouMean(key, keys)));
 }
 
+// CLI11's reader makes a list of two adjacent lines of a key, and cuts a value at # also in quotes.
+absl::Status CheckLines(const std::string& path) {
+  std::ifstream file(path);
+  std::set<std::string> keys;
+  std::string section, line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    absl::StripAsciiWhitespace(&line);
+    if (absl::StartsWith(line, "[")) section = line;
+    const size_t equals = line.find('='), hash = line.find('#');
+    if (equals == line.npos || hash < equals) continue;
+    const std::string key(absl::StripAsciiWhitespace(line.substr(0, equals)));
+    const auto end = line.begin() + static_cast<ptrdiff_t>(std::min(hash, line.size()));
+    const bool is_cut = hash != line.npos && std::count(line.begin(), end, '"') % 2 == 1;
+    if (keys.insert(section + key).second && !is_cut) continue;
+    return absl::InvalidArgumentError(absl::StrCat(
+        path, ":", number, ": ", Quoted(key),
+        is_cut ? " has a value with #, which begins a comment" : " is given more than once"));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 std::string FromEnvironment(const std::string& variable) {
@@ -72,6 +96,7 @@ absl::Status ReadConfig(const std::string& path, const Verb& verb, const AddSett
   } catch (const CLI::Error& error) {
     return absl::InvalidArgumentError(absl::StrCat(path, ": ", error.what()));
   }
+  if (absl::Status bad = CheckLines(path); !bad.ok()) return bad;
   for (const std::string& wanted : {verb.name, std::string()}) {
     for (const CLI::ConfigItem& item : items) {
       const std::string section = absl::StrJoin(item.parents, " ");

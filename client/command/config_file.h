@@ -23,7 +23,8 @@ using AddSetting =
     std::function<void(const Flag& flag, const std::string& text, bool is_for_this_verb)>;
 
 // Calls `add` with each of the verb's flags in the file, first with those below [VERB], which are
-// for this verb only. INVALID_ARGUMENT names the file and the error.
+// for this verb only. INVALID_ARGUMENT names the file and the error, such as a key that is given
+// twice.
 absl::Status ReadConfig(const std::string& path, const Verb& verb, const AddSetting& add);
 
 }  // namespace ballpiston::client

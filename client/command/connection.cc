@@ -64,6 +64,7 @@ std::string HintOfSocket(absl::string_view message) {
 // The flag whose value the error of OpenChannel is about.
 absl::string_view FlagOf(absl::string_view error) {
   if (absl::StartsWith(error, "the token file ")) return "--token-file";
+  if (absl::StartsWith(error, "the token ")) return "BALLPISTON_TOKEN";
   return absl::StartsWith(error, "the authority file ") ? "--ca" : "--server";
 }
 

@@ -22,13 +22,16 @@ absl::Status Bad(absl::string_view text, absl::string_view reason) {
 
 // std::from_chars rejects blanks, a plus sign and hexadecimal numbers, but accepts nan and inf.
 // Therefore no letters other than e are permitted here.
-std::optional<double> ToNumber(absl::string_view text) {
-  if (text.find_first_not_of("0123456789+-.eE") != absl::string_view::npos) return std::nullopt;
-  double value = 0;
+std::errc ReadNumber(absl::string_view text, double& value) {
+  if (text.find_first_not_of("0123456789+-.eE") != text.npos) return std::errc::invalid_argument;
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return value;
+  return stop == end ? error : std::errc::invalid_argument;
+}
+
+std::optional<double> ToNumber(absl::string_view text) {
+  double value = 0;
+  return ReadNumber(text, value) == std::errc() ? std::optional(value) : std::nullopt;
 }
 
 constexpr double kExactBelow = 9007199254740992;  // 2^53
@@ -113,8 +116,12 @@ absl::StatusOr<Range> ParseItem(absl::string_view item) {
 }  // namespace
 
 absl::StatusOr<double> ParseNumber(absl::string_view text) {
-  if (const auto number = ToNumber(text)) return *number;
-  return Bad(text, "is not a decimal number such as 0.1 or 1e-3");
+  double value = 0;
+  const std::errc error = ReadNumber(text, value);
+  if (error == std::errc()) return value;
+  return Bad(text, error == std::errc::result_out_of_range
+                       ? "is beyond double precision; permitted: 5e-324 to 1.8e308 in size, or 0"
+                       : "is not a decimal number such as 0.1 or 1e-3");
 }
 
 absl::StatusOr<int64_t> ParseCount(absl::string_view text) {

@@ -12,7 +12,7 @@ absl::Status CheckSelection(const Options& options) {
   if (options.jobs.empty() && options.labels.empty()) {
     return absl::InvalidArgumentError("name a JOB, or give --label KEY=VALUE");
   }
-  if (options.jobs.empty() || options.labels.empty()) return absl::OkStatus();
+  if (options.jobs.empty() || !options.given.contains("--label")) return absl::OkStatus();
   return absl::InvalidArgumentError(
       "--label and names of jobs exclude each other: give one of them");
 }
@@ -29,7 +29,7 @@ absl::Status NoneFound(const JobStates& states) {
 absl::StatusOr<std::vector<std::string>> SelectedJobs(const Connection& connection,
                                                       const Options& options,
                                                       const JobStates& states) {
-  if (options.labels.empty()) return options.jobs;
+  if (!options.jobs.empty()) return options.jobs;
   v1::ListEnsembleJobsRequest request;
   request.set_view(v1::ListEnsembleJobsRequest::BASIC);
   request.mutable_labels()->insert(options.labels.begin(), options.labels.end());

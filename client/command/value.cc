@@ -67,17 +67,13 @@ absl::StatusOr<std::map<std::string, std::string>> ParseLabels(const std::string
   return labels;
 }
 
-// A Timestamp has the years 1 to 9999. ParseTime also reads others, and infinite-future.
-bool IsInTimestamp(absl::Time time) {
-  const int64_t year = absl::ToCivilYear(time, absl::UTCTimeZone()).year();
-  return year >= 1 && year <= 9999;
-}
-
+// A Timestamp has the years 0001 to 9999. ParseTime also reads 26, 12026 and infinite-future.
 absl::StatusOr<absl::Time> ParseDate(const std::string& text) {
   absl::Time time;
   std::string error;
+  const bool has_year = text.find('-') == 4 && text >= "0001";
   for (const char* format : {"%Y-%m-%d", "%Y-%m-%dT%H:%M:%SZ"}) {
-    if (absl::ParseTime(format, text, &time, &error) && IsInTimestamp(time)) return time;
+    if (has_year && absl::ParseTime(format, text, &time, &error)) return time;
   }
   return NotPermitted(text, "is not a date (UTC): write 2026-01-31 or 2026-01-31T12:00:00Z");
 }

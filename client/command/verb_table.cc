@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -83,12 +82,6 @@ Value Forwarded(const std::string& flag) {
   return Switch([flag](Options& options, bool on) {
     if (on) options.words.push_back(flag);
   });
-}
-
-// Clamped to the range of the API's field. The server checks the permitted range.
-int32_t Clamped(int64_t priority) {
-  using Limits = std::numeric_limits<int32_t>;
-  return static_cast<int32_t>(std::clamp<int64_t>(priority, Limits::min(), Limits::max()));
 }
 
 Flag Required(std::string name, Value value, std::string text) {
@@ -195,7 +188,9 @@ const FlagGroup kJob = {
      {"--request-id",
       Text("UUID", [](Options& o, std::string id) { o.create.set_request_id(std::move(id)); }),
       "idempotency key: a retry with the same UUID returns the original job"},
-     {"--priority", Count([](Options& o, int64_t n) { o.create.set_priority(Clamped(n)); }),
+     {"--priority",
+      CountFrom(-100, 100,
+                [](Options& o, int64_t n) { o.create.set_priority(static_cast<int32_t>(n)); }),
       "by default 0; the server runs your jobs with a higher priority first"},
      {"--label", Labels("KEY=VALUE"),
       "a label of the job, by which it can be found again; may be repeated"}},

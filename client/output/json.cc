@@ -3,11 +3,35 @@
 #include <google/protobuf/struct.pb.h>
 #include <google/protobuf/util/json_util.h>
 
+#include <algorithm>
+
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "client/library/quoted.h"
 
 namespace ballpiston::client {
+namespace {
+
+// The parser drops a null from a list, and merges a list in a list with it. Both would move the
+// values behind it to other points.
+bool HasListThatMoves(const google::protobuf::Value& value) {
+  const auto& fields = value.struct_value().fields();
+  const auto& items = value.list_value().values();
+  return std::ranges::any_of(fields, [](const auto& f) { return HasListThatMoves(f.second); }) ||
+         std::ranges::any_of(items, [](const google::protobuf::Value& item) {
+           return item.has_null_value() || item.has_list_value() || HasListThatMoves(item);
+         });
+}
+
+// The parser's message contains the wrong value in full, even if it is very long. Control
+// characters would change the terminal.
+absl::Status ParserError(absl::string_view message) {
+  std::string text = Shortened(message, kLongestMessage);
+  std::erase_if(text, [](char c) { return absl::ascii_iscntrl(c) && c != '\n'; });
+  return absl::InvalidArgumentError(text);
+}
+
+}  // namespace
 
 std::string Json(const google::protobuf::Message& message) {
   google::protobuf::util::JsonPrintOptions options;
@@ -25,17 +49,17 @@ absl::Status ReadJson(const std::string& json, google::protobuf::Message& messag
   }
   // The parser takes the last value of a repeated field. It rejects only repeated keys of a map, so
   // the text is also parsed as a map.
-  google::protobuf::Struct keys;
+  google::protobuf::Value keys;
   const auto read = google::protobuf::util::JsonStringToMessage(json, &keys);
   const size_t repeated = read.message().find("Repeated map key: ");
   if (repeated != std::string::npos) {
-    return absl::InvalidArgumentError(
-        Shortened(read.message().substr(repeated).ToString(), kLongestMessage));
+    return ParserError(read.message().substr(repeated).ToString());
+  }
+  if (HasListThatMoves(keys)) {
+    return absl::InvalidArgumentError("a list contains null or a list; permitted: values");
   }
   const auto status = google::protobuf::util::JsonStringToMessage(json, &message);
-  if (status.ok()) return absl::OkStatus();
-  // The parser's message contains the wrong value in full, even if it is very long.
-  return absl::InvalidArgumentError(Shortened(std::string(status.message()), kLongestMessage));
+  return status.ok() ? absl::OkStatus() : ParserError(std::string(status.message()));
 }
 
 }  // namespace ballpiston::client

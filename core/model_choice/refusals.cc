@@ -171,8 +171,6 @@ std::vector<FieldViolation> AnswerViolations(const EnsembleSpec& spec) {
 
 namespace {
 
-std::string Megabytes(double bytes) { return absl::StrFormat("%.0f MB", std::ceil(bytes / 1e6)); }
-
 // Only gases need much memory, and only their shape matters.
 void CheckMemory(const EnsembleSpec& spec, const Machine& machine,
                  std::vector<FieldViolation>& found) {
@@ -184,8 +182,9 @@ void CheckMemory(const EnsembleSpec& spec, const Machine& machine,
     if (needed <= machine.memory) continue;
     found.push_back(
         {absl::StrFormat("grid.cells[%d]", i),
-         absl::StrFormat("is %s, which needs %s of memory; permitted here: up to %s",
-                         Text(ShapeOf(cells[i])), Megabytes(needed), Megabytes(machine.memory))});
+         absl::StrFormat("is %s, which needs %.0f MB of memory; permitted here: up to %.0f MB",
+                         Text(ShapeOf(cells[i])), std::ceil(needed / 1e6),
+                         std::floor(machine.memory / 1e6))});
   }
 }
 

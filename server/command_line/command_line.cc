@@ -6,18 +6,17 @@
 #include <cstdint>
 #include <istream>
 #include <memory>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "server/machine_limits.h"
+#include "server/number_range.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
@@ -36,6 +35,8 @@ constexpr int kMostWorkers = 1024;
 constexpr double kMostSeconds = 1e6;
 constexpr double kDaySeconds = 86400;
 constexpr double kMostLimit = 1e15;
+// A smaller limit is a mistake in its unit, and would expire all results at once.
+constexpr double kLeastDays = 1e-3, kLeastStoreBytes = 1e6;
 constexpr int64_t kMostSlurmMinutes = 60 * 24 * 365;
 constexpr int64_t kMostSlurmWorkers = 1'000'000;
 
@@ -51,27 +52,11 @@ struct Words {
 
 std::string Text(double number) { return absl::StrFormat("%.15g", number); }
 
-// Accepts a number and rewrites it in decimal: CLI11 takes 010 for 8 and lets nan pass.
-template <typename Number>
-CLI::Validator Between(double least, double most) {
-  constexpr bool kIsWhole = std::is_integral_v<Number>;
-  const std::string range = absl::StrCat(Text(least), " to ", Text(most));
-  const auto accept = [=](std::string& text) -> std::string {
-    double number = 0;
-    const bool is_permitted = absl::SimpleAtod(text, &number) && number >= least &&
-                              number <= most && (!kIsWhole || number == std::floor(number));
-    if (is_permitted) text = absl::StrFormat("%.17g", number);
-    const char* const kind = kIsWhole ? "whole numbers, " : "";
-    return is_permitted ? "" : absl::StrCat(text, " is refused; permitted: ", kind, range);
-  };
-  return CLI::Validator(accept, range);
-}
-
 template <typename Number>
 void AddNumber(CLI::App& app, const std::string& flag, Number& value, double least, double most,
-               const std::string& description) {
+               const std::string& description, bool permits_zero = false) {
   app.add_option(flag, value, description)
-      ->transform(Between<Number>(least, most))
+      ->transform(Between<Number>(least, most, permits_zero))
       ->type_name("N")
       ->capture_default_str();
 }
@@ -234,8 +219,9 @@ void AddClusterFlags(CLI::App& app, Words& words) {
 
 void AddLimitFlags(CLI::App& app, Limits& limits) {
   BeginGroup(app, "Limits; 0 means no limit");
-  const auto add = [&app](const char* flag, auto& limit, const char* description) {
-    AddNumber(app, flag, limit, 0, kMostLimit, description);
+  const auto add = [&app](const char* flag, auto& limit, const char* description,
+                          double least = 0) {
+    AddNumber(app, flag, limit, least, kMostLimit, description, /*permits_zero=*/true);
   };
   add("--max-active-jobs-per-principal", limits.max_active_jobs_per_principal,
       "jobs that have not ended, of one principal");
@@ -251,9 +237,10 @@ void AddLimitFlags(CLI::App& app, Limits& limits) {
       "MiB of memory of all points that this server computes at a time, by an upper bound.\n"
       "By default 80 % of the memory of this machine or of the server's control group");
   add("--retain-days", limits.retain_days,
-      "days from the end of a job until its results expire, unless it is pinned");
+      "days from the end of a job until its results expire, unless it is pinned", kLeastDays);
   add("--max-store-bytes", limits.max_store_bytes,
-      "bytes of the store; shortly before it is full, results expire, the oldest first");
+      "bytes of the store; shortly before it is full, results expire, the oldest first",
+      kLeastStoreBytes);
 }
 
 void AddLogFlags(CLI::App& app, CommandLine& line, Words& words) {

@@ -24,7 +24,8 @@ absl::Status CannotWrite(const std::string& target, int error) {
       absl::StrCat("backup ", target, " cannot be written: ", std::strerror(error));
   if (error == ENOSPC || error == EDQUOT) return absl::ResourceExhaustedError(what);
   if (error == EIO) return absl::UnavailableError(what);
-  return absl::PermissionDeniedError(what);
+  const bool is_denied = error == EACCES || error == EPERM || error == EROFS;
+  return is_denied ? absl::PermissionDeniedError(what) : absl::FailedPreconditionError(what);
 }
 
 absl::Status CheckIsFree(const std::string& target) {

@@ -25,6 +25,7 @@
 #include "core/engine_version.h"
 #include "server/fatal_signals.h"
 #include "server/machine_limits.h"
+#include "server/number_range.h"
 #include "server/process_start.h"
 #include "server/worker/worker.h"
 
@@ -165,22 +166,24 @@ int Compute(const CommandLine& line) {
 }
 
 void AddFlags(CLI::App& app, CommandLine& line) {
+  constexpr double kLeast = 1e-3, kMost = 1e9;  // seconds
   app.add_option("folder", line.folder, "the folder that the server has as --cluster-folder")
-      ->required();
+      ->required()
+      ->check([](const std::string& path) { return std::string(path.empty() ? "is empty" : ""); });
   app.add_option("--for", line.for_seconds,
                  "seconds after which the worker ends; default: no limit")
-      ->check(CLI::PositiveNumber);
+      ->transform(Between<double>(kLeast, kMost));
   app.add_option("--idle-seconds", line.worker.idle_seconds,
                  "the worker ends if it has found nothing to do for this time")
-      ->check(CLI::NonNegativeNumber)
+      ->transform(Between<double>(0, kMost))
       ->capture_default_str();
   app.add_option("--retry-seconds", line.worker.retry_seconds,
                  "wait before the next attempt if the folder is full or cannot be used")
-      ->check(CLI::PositiveNumber)
+      ->transform(Between<double>(kLeast, kMost))
       ->capture_default_str();
   app.add_option("--give-up-seconds", line.worker.give_up_seconds,
                  "stop retrying one operation on a lease after this time")
-      ->check(CLI::NonNegativeNumber)
+      ->transform(Between<double>(0, kMost))
       ->capture_default_str();
   app.set_version_flag("--version", EngineVersion(), "print the engine version");
 }

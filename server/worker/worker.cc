@@ -142,11 +142,14 @@ class Worker {
   absl::Status Run() {
     double look = kFirstLook * Random();
     Clock::time_point last_work = host_.now();
+    bool is_usable = true;
     while (host_.end() == EndOfWork::kNotYet) {
       const absl::StatusOr<bool> worked = TakeOne();
       const bool may_pass = worked.ok() || absl::IsUnavailable(worked.status()) ||
                             absl::IsResourceExhausted(worked.status());
       if (!may_pass) return worked.status();
+      const bool was_usable = std::exchange(is_usable, worked.ok());
+      if (was_usable && !is_usable) host_.report(worked.status().message());
       if (worked.ok() && *worked) {
         last_work = host_.now();
         look = kFirstLook;

@@ -75,7 +75,7 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
   const std::string workers = " is refused; permitted: whole numbers, 1 to 1024";
   const std::string seconds = " is refused; permitted: 0 to 3600";
   const std::string limit = " is refused; permitted: whole numbers, 0 to 1e+15";
-  const std::string real_limit = " is refused; permitted: 0 to 1e+15";
+  const std::string days = " is refused; permitted: 0, or 0.001 to 1e+15";
   const struct {
     Words flags;
     std::string message;
@@ -106,8 +106,10 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
        "--max-streams: 40000 is refused; permitted: whole numbers, 0 to 32768"},
       {{"--max-points-per-job", "-1"}, "--max-points-per-job: -1" + limit},
       {{"--max-points-per-job=1e30"}, "--max-points-per-job: 1e30" + limit},
-      {{"--retain-days", "-1e-9"}, "--retain-days: -1e-9" + real_limit},
-      {{"--retain-days=inf"}, "--retain-days: inf" + real_limit},
+      {{"--retain-days", "-1e-9"}, "--retain-days: -1e-9" + days},
+      {{"--retain-days=1e-320"}, "--retain-days: 1e-320" + days},
+      {{"--retain-days=inf"}, "--retain-days: inf" + days},
+      {{"--max-store-bytes=10"}, "10 is refused; permitted: whole numbers, 0, or 1000000 to 1e+15"},
       {{"--log-level", "-1"}, "--log-level: -1 not in {info,warning,error}"},
       {{"--device=tpu"}, "--device: tpu not in {cpu,gpu}"},
       {{"--executor=slurm"}, "--cluster-folder: \"\" is not an absolute path"},

@@ -24,6 +24,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "core/arithmetic/number_text.h"
+#include "server/number_range.h"
 #include "tools/method_comparison/method_comparison.h"
 
 namespace ballpiston::method_comparison {
@@ -71,7 +72,9 @@ void AddFlags(CLI::App& app, MethodComparisonSpec& spec, std::string& progress) 
                  "work of each method's largest run, 0.01 to 60. The program takes about 70 times "
                  "as long, and 10 times more for each delta of a relaxation time")
       ->capture_default_str();
-  app.add_option("--seed", spec.seed, "of the random numbers")->capture_default_str();
+  app.add_option("--seed", spec.seed, "of the random numbers")
+      ->transform(server::Between<uint64_t>(0, 1e15))
+      ->capture_default_str();
   app.add_option("--progress", progress,
                  "bar | none, on standard error; bar if it is a terminal and the flag is not given")
       ->check(CLI::IsMember({"bar", "none"}));

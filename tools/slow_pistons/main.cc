@@ -12,11 +12,14 @@
 #include "core/gas/gas_geometry.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/statistics/stated_error.h"
+#include "server/number_range.h"
 #include "tools/slow_pistons/correlation_windows.h"
 #include "tools/slow_pistons/idle_pistons.h"
 
 namespace ballpiston::slow_pistons {
 namespace {
+
+using server::Between;
 
 struct Arguments {
   double rho = 0.529561127988977;
@@ -82,18 +85,22 @@ int Run(int argc, char** argv) {
   CLI::App app("Measures slow pistons, and prints CSV.", "slow_pistons");
   app.add_option("--rho", arguments.rho, "radius of the discs")->capture_default_str();
   app.add_option("--delta", arguments.delta, "how far the pistons reach")->capture_default_str();
-  app.add_option("--seed", arguments.chain.seed, "of the random numbers")->capture_default_str();
+  app.add_option("--seed", arguments.chain.seed, "of the random numbers")
+      ->transform(Between<uint64_t>(0, 1e15))
+      ->capture_default_str();
   CLI::App* idle = app.add_subcommand("idle", "s P(no exchange during s) of a chain's pistons");
-  idle->add_option("--cells", arguments.cells, "of the chain")->check(CLI::Range(1, 1000));
-  idle->add_option("--hot", arguments.chain.hot, "temperature")->check(CLI::PositiveNumber);
-  idle->add_option("--cold", arguments.chain.cold, "temperature")->check(CLI::PositiveNumber);
+  idle->add_option("--cells", arguments.cells, "of the chain")
+      ->transform(Between<int64_t>(1, 1000));
+  const CLI::Validator temperature = Between<double>(1e-9, 1e9);
+  idle->add_option("--hot", arguments.chain.hot, "temperature")->transform(temperature);
+  idle->add_option("--cold", arguments.chain.cold, "temperature")->transform(temperature);
   idle->add_option("--block", arguments.chain.block, "length of a block of time")
-      ->check(CLI::PositiveNumber);
+      ->transform(Between<double>(1e-3, 1e9));
   idle->add_option("--blocks", arguments.chain.blocks, "number of blocks")
-      ->check(CLI::Range(2, 1000000));
+      ->transform(Between<uint64_t>(2, 1e6));
   CLI::App* windows = app.add_subcommand("windows", "the pair's correlation integral by window");
   windows->add_option("--orbits", arguments.orbits, "number of orbits")
-      ->check(CLI::Range(2, 1000000000));
+      ->transform(Between<uint64_t>(2, 1e9));
   for (CLI::App* verb : {idle, windows}) verb->fallthrough();
   app.require_subcommand(1);
   try {

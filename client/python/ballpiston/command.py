@@ -33,6 +33,7 @@ _EXIT_CODES: list[tuple[type[BaseException], int]] = [
     (KeyboardInterrupt, 130),
     (OSError, 2),
     (ValueError, 2),
+    (MemoryError, 2),
     (TypeError, 2),
 ]
 # A retry does not help against these; against other limits of the server it does.

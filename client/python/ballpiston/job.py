@@ -16,6 +16,7 @@ from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
 from ballpiston.errors import Error, NotFound, ResultsExpired
 from ballpiston.fields import shown, value_of
+from ballpiston.parameter_lists import truth_value
 from ballpiston.progress import fraction_of, progress_on_screen
 from ballpiston.result import Result
 from ballpiston.result_table import html_table
@@ -221,7 +222,7 @@ class Job:
 
     def pin(self, pinned: bool = True) -> Job:
         """Keeps its results from expiring; with False they may expire again."""
-        return self._update(pinned=pinned)
+        return self._update(pinned=truth_value("pinned", pinned))
 
     def label(self, **labels: str | None) -> Job:
         """Sets these labels and keeps the others; None removes a label. Of two changes at the same

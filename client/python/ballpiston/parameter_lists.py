@@ -33,6 +33,7 @@ INT64 = (-(2**63), 2**63 - 1)
 UINT64 = (0, 2**64 - 1)
 
 _MOST = 100_000  # values of a list
+_NO_LISTS = (bytes, bytearray, Mapping)  # iterable, but not over numbers of a list
 _NUMBER_CHARACTERS = frozenset("0123456789+-.eE")
 
 
@@ -57,10 +58,10 @@ def shape_list(name: str, value: Shapes) -> list[str]:
 def whole_number(name: str, value: object, least: float = -math.inf, most: float = math.inf) -> int:
     """10000, 1e4 or np.int64(10000), as an int. Raises TypeError: not a number; ValueError: a
     number that is not whole, or not from `least` to `most`."""
-    value = _scalar(value)
-    if isinstance(value, numbers.Integral) and not isinstance(value, bool):
+    real = real_number(name, value := _scalar(value))
+    if isinstance(value, numbers.Integral):
         number = int(value)
-    elif (real := real_number(name, value)).is_integer():
+    elif real.is_integer():
         number = int(real)
     else:
         raise ValueError(f"{name} has to be a whole number, not {value!r}")
@@ -73,7 +74,8 @@ def real_number(name: str, value: object) -> float:
     """A float. Raises TypeError: not a number; ValueError: an int beyond the range of double
     precision."""
     value = _scalar(value)
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
+    of_other_kind = isinstance(value, (bool, np.bool_, np.timedelta64))
+    if of_other_kind or not isinstance(value, numbers.Real):
         raise TypeError(f"{name} has to be a number, not {value!r}")
     try:
         return float(value)
@@ -99,7 +101,7 @@ def _items(name: str, value: object) -> list[object]:
         return [value]
     if isinstance(value, np.ndarray) and value.ndim != 1:
         raise ValueError(f"{name} has {value.ndim} dimensions; a list of parameters has one")
-    if isinstance(value, (bytes, Mapping)) or not isinstance(value, Iterable):
+    if isinstance(value, _NO_LISTS) or not isinstance(value, Iterable):
         raise TypeError(f"{name} has to be a number or a list of numbers, not {value!r}")
     return list(value)
 
@@ -112,12 +114,19 @@ def _parsed_list(name: str, text: str) -> list[float]:
 
 
 def _parsed_number(name: str, text: str) -> float:
-    if text and set(text) <= _NUMBER_CHARACTERS:
-        try:
-            return float(text)
-        except ValueError:
-            pass
-    raise ValueError(f"{name}: {text!r} is not a decimal number such as 0.1 or 1e-3")
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if math.isnan(number) or text[0] == "+" or not set(text) <= _NUMBER_CHARACTERS:
+        raise ValueError(f"{name}: {text!r} is not a decimal number such as 0.1 or 1e-3")
+    is_below = number == 0 and not set(text.lower().split("e")[0]).isdisjoint("123456789")
+    if is_below or math.isinf(number):
+        raise ValueError(
+            f"{name}: {text!r} is beyond double precision; permitted: 5e-324 to 1.8e308 in size, "
+            "or 0"
+        )
+    return number
 
 
 def _parsed_range(name: str, text: str) -> list[float]:
@@ -186,6 +195,8 @@ def add_points(points: Points, grid: Any) -> None:
             raise TypeError(f"points has the column {name}, and {name} is given: give one of them")
         of_column = f"points, column {name}"
         if name == "cells":
+            if any(":" in str(value) for value in values):
+                raise ValueError(f"{of_column} has a range; a row has one shape")
             grid.cells.extend(shape_list(of_column, values))
         else:
             getattr(grid, name).extend(number_list(of_column, values))
@@ -195,8 +206,9 @@ def add_points(points: Points, grid: Any) -> None:
 def _columns(points: Points) -> dict[str, list[Any]]:
     if isinstance(points, Mapping) or hasattr(points, "columns"):
         for name in points:
-            if not isinstance(points[name], Iterable):
-                raise TypeError(f"points, column {name} has to be a list, not {points[name]!r}")
+            column = points[name]
+            if isinstance(column, (str, *_NO_LISTS)) or not isinstance(column, Iterable):
+                raise TypeError(f"points, column {name} has to be a list, not {column!r}")
         return {name: list(points[name]) for name in points}
     rows = list(points) if isinstance(points, Iterable) else [points]
     if not all(isinstance(row, Mapping) for row in rows):

@@ -58,7 +58,9 @@ TEST_F(QuestionTest, EachFlagReachesItsField) {
 
 TEST(SpecFile, IsProtoJson) {
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec,
-                       ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "seed": 7,
+                       ParseSpec("s.json",
+                                 "\xEF\xBB\xBF"
+                                 R"({"experiment": "FIRST_HIT", "seed": 7,
           "grid": {"rho": [0.53], "epsilon": [0.1, 0], "cells": ["12", "4x3"], "hot": [3, 2]},
           "target": {"samples": "100", "estimate": "conductivity"}})"));
   const auto expected = FromText<v1::EnsembleSpec>(
@@ -68,7 +70,7 @@ TEST(SpecFile, IsProtoJson) {
 }
 
 TEST(SpecFile, NamesTheUnknownField) {
-  EXPECT_THAT(ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "sed": 1})"),
+  EXPECT_THAT(ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "s\u001bed": 1})"),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("sed")));
 }
 
@@ -79,6 +81,14 @@ TEST(SpecFile, ARepeatedKeyIsRefused) {
     EXPECT_THAT(ParseSpec("s.json", json),
                 StatusIs(absl::StatusCode::kInvalidArgument,
                          "--spec s.json: Repeated map key: 'seed' is already set."));
+  }
+}
+
+// The JSON parser would drop a null, and merge the lists.
+TEST(SpecFile, AListWithNullOrAListIsRefused) {
+  for (const char* list : {"[0.53, null, 0.6]", "[[0.53], [0.54]]", "null, \"cells\": [null]"}) {
+    EXPECT_THAT(ParseSpec("s.json", absl::StrCat(R"({"grid": {"rho": )", list, "}}")),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("null or a list")));
   }
 }
 

@@ -26,6 +26,8 @@ def test_the_life_of_a_job(client: ballpiston.Client) -> None:
     assert again.job_name != job.name
     np.testing.assert_array_equal(again["mean_hit_time"], result["mean_hit_time"])
     assert job.pin().pinned
+    with pytest.raises(TypeError, match="pinned has to be True or False, not None"):
+        job.pin(None)  # type: ignore[arg-type]
     assert not job.pin(False).pinned
     job.delete()
     with pytest.raises(ballpiston.NotFound) as caught:

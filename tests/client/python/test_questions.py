@@ -48,6 +48,11 @@ def test_shapes_are_numbers_or_texts() -> None:
         ("0.1;0.2", ValueError),
         ("0.1:0.2", ValueError),
         ("nan", ValueError),
+        ("", ValueError),
+        ("+1", ValueError),
+        ("1e400", ValueError),
+        ("1e-400", ValueError),
+        (bytearray(b"8"), TypeError),
         ("0:1:3:log", ValueError),
         (["0.1"], TypeError),
         ([True], TypeError),
@@ -72,6 +77,8 @@ def test_a_chain_has_a_finite_number_of_cells(values: Any) -> None:
 
 def test_whole_numbers_may_be_floats() -> None:
     assert ballpiston.specification("first-hit", samples=1e5).target.samples == 100_000
+    with pytest.raises(TypeError, match="samples has to be a number"):
+        ballpiston.specification("first-hit", samples=np.timedelta64(5, "s"))
     with pytest.raises(ValueError, match="whole number"):
         ballpiston.specification("first-hit", samples=1.5)
 

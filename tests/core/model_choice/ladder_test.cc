@@ -515,7 +515,7 @@ TEST(Ladder, ChainsOfHundredsTakeMinutes) {
 
 TEST(Ladder, AQuestionBeyondTheMemoryIsRejected) {
   Machine machine = SomeMachine();
-  machine.memory = 1e8;
+  machine.memory = 100.9e6;
   const EnsembleSpec spec = Asked("gas-conduction cells=1000x1000 model=billiard samples=1");
   EXPECT_THAT(MachineViolations(spec, machine),
               ElementsAre(AllOf(

@@ -57,6 +57,7 @@ TEST_F(BackupTest, ASoundStoreIsSummedUpAndCopiedIntoOneFileOfMode0600) {
   WriteFile(Copy(), "precious");
   EXPECT_THAT(BackupStore(Store(), Copy()), StatusIs(absl::StatusCode::kAlreadyExists));
   EXPECT_EQ(Contents(Copy()), "precious");
+  EXPECT_THAT(BackupStore(Store(), Copy() + "/x"), StatusIs(absl::StatusCode::kFailedPrecondition));
 }
 
 TEST_F(BackupTest, EachInconsistencyIsReported) {

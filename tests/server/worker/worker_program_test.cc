@@ -117,8 +117,11 @@ TEST_F(WorkerProgramTest, ASignalledWorkerGivesItsLeaseBackWithItsChunks) {
 
 TEST_F(WorkerProgramTest, WrongFlagsAreUsageErrors) {
   EXPECT_THAT(RunProgram({.command = {WorkerProgram()}}), ExitsWith(2));
-  EXPECT_THAT(RunProgram(Command({"--for=-1"})), ExitsWith(2));
-  EXPECT_THAT(RunProgram(Command({"--no-such-flag"})), ExitsWith(2));
+  EXPECT_THAT(RunProgram({.command = {WorkerProgram(), ""}}), ExitsWith(2));
+  for (const char* flag : {"--for=-1", "--for=nan", "--idle-seconds=nan", "--retry-seconds=nan",
+                           "--give-up-seconds=nan", "--no-such-flag"}) {
+    EXPECT_THAT(RunProgram({.command = {WorkerProgram(), shared_, flag}}), ExitsWith(2)) << flag;
+  }
 }
 
 TEST_F(WorkerProgramTest, AFolderThatDoesNotExistIsAnError) {

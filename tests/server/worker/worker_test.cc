@@ -173,9 +173,10 @@ TEST_F(WorkerTest, DamagedAndForeignFilesAreGivenBack) {
   EXPECT_THAT(begun_, IsEmpty());
 }
 
-TEST_F(WorkerTest, AFolderThatCannotBeReadIsReportedWhenTheWorkerEnds) {
+TEST_F(WorkerTest, AFolderThatCannotBeReadIsReportedAtOnceAndWhenTheWorkerEnds) {
   files_.before = [](const char*, const std::string&) { return absl::UnavailableError("gone"); };
   EXPECT_THAT(Run(), StatusIs(absl::StatusCode::kUnavailable, HasSubstr("gone")));
+  EXPECT_THAT(lines_, ElementsAre("gone"));
 }
 
 // ---- the chunks of a lease ----

@@ -72,6 +72,7 @@ TEST(Program, EveryValueThatIsNotPermittedIsNamed) {
 
 TEST(Program, AnUnknownFlagExitsWithTwoAndHelpWithZero) {
   EXPECT_THAT(RunComparison({"--sample=3"}), ExitsWith(2));
+  EXPECT_THAT(RunComparison({"--seed=-1"}), ExitsWith(2));
   const ProcessResult help = RunComparison({"--help"});
   EXPECT_THAT(help, ExitsWith(0));
   EXPECT_THAT(help.out, HasSubstr("--relaxation-delta"));

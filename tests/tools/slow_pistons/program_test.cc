@@ -45,5 +45,13 @@ TEST(Program, GrowthWithoutLongIdleTimesHasNoError) {
   EXPECT_EQ(rows[5][8], "");
 }
 
+TEST(Program, ANumberOutOfRangeExitsWithTwo) {
+  for (const char* flag :
+       {"--hot=nan", "--cold=1e300", "--block=nan", "--seed=-1", "--cells=01001"}) {
+    const std::vector<std::string> command = {BuildPath("bin/slow_pistons"), "idle", flag};
+    EXPECT_THAT(RunProgram({.command = command}), ExitsWith(2)) << flag;
+  }
+}
+
 }  // namespace
 }  // namespace ballpiston::slow_pistons
