@@ -58,6 +58,7 @@ TEST_F(ClientTest, ListStopsAtItsLimit) {
   const auto asked = server_.ensemble.Asked().list;
   ASSERT_EQ(asked.size(), 2u);  // pages of two
   EXPECT_EQ(asked[1].page_size(), 1);
+  EXPECT_THAT(client.List(request, 0), IsOkAndHolds(testing::IsEmpty()));
 }
 
 TEST_F(ClientTest, APinIsRepeated) {
