@@ -18,11 +18,13 @@ file(RELATIVE_PATH libdir_to_includedir ${CMAKE_INSTALL_FULL_LIBDIR} ${CMAKE_INS
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/ballpiston)
 
 # The library is the target ballpiston::COMPONENT for other programs. Further arguments are the
-# libraries that it needs and that are installed with it.
+# libraries that it needs and that are installed with it. All can be linked into a shared library.
 function(install_library target component)
   foreach(library IN LISTS target ARGN)
     string(REPLACE ballpiston_ "" name ${library})
-    set_target_properties(${library} PROPERTIES EXPORT_NAME ${name})
+    set_target_properties(${library} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+    # Without this option the compiler inlines no function that a shared library exports.
+    target_compile_options(${library} PRIVATE -fno-semantic-interposition)
     target_compile_features(${library} PUBLIC cxx_std_20)
     target_include_directories(${library} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   endforeach()
@@ -34,6 +36,8 @@ function(install_library target component)
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endfunction()
 
+# The linker may take the program's copy of an inline function: it has to have the same bits.
+target_compile_options(ballpiston_core INTERFACE $<INSTALL_INTERFACE:-ffp-contract=off>)
 install_library(ballpiston_core core)
 install_headers(${PROJECT_SOURCE_DIR}/core core core *.h)
 set(components core)

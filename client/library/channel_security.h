@@ -36,6 +36,9 @@ struct ChannelSecurity {
 //   $XDG_STATE_HOME/ballpiston/tokens/MACHINE/127.0.0.1:50051    (~/.local/state if it is not set)
 std::string OwnToken(const std::string& address);
 
+// Both functions take a loopback address as a number, 127.0.0.1:50051, and treat localhost as any
+// other name. OpenChannel (channel.h) replaces localhost.
+//
 // Checks that the settings fit each other and the address. Reads no file. INVALID_ARGUMENT names
 // the fault, e.g. a token for another machine without encryption.
 absl::Status CheckSecurity(const ChannelSecurity& security, absl::string_view address);

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "absl/status/status.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 
 namespace ballpiston::client {
@@ -47,6 +48,16 @@ std::vector<char*> Arguments(const ChildProcess& child) {
   return arguments;
 }
 
+// This program's variables except one.
+std::vector<char*> Environment(const std::string& without) {
+  std::vector<char*> variables;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    if (!absl::StartsWith(*variable, without + "=")) variables.push_back(*variable);
+  }
+  variables.push_back(nullptr);
+  return variables;
+}
+
 int Decode(int status) {
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
@@ -67,7 +78,7 @@ absl::StatusOr<pid_t> StartChild(const ChildProcess& child) {
   SetSignalsAndGroup(child, &attributes);
   pid_t pid = 0;
   const int error = posix_spawnp(&pid, child.command[0].c_str(), &actions, &attributes,
-                                 Arguments(child).data(), environ);
+                                 Arguments(child).data(), Environment(child.without).data());
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (error == 0) return pid;
@@ -76,7 +87,9 @@ absl::StatusOr<pid_t> StartChild(const ChildProcess& child) {
 
 std::optional<int> ExitStatus(pid_t pid) {
   int status = 0;
-  if (waitpid(pid, &status, WNOHANG) != pid) return std::nullopt;
+  const pid_t ended = waitpid(pid, &status, WNOHANG);
+  if (ended < 0 && errno == ECHILD) return kUnknownStatus;
+  if (ended != pid) return std::nullopt;
   return Decode(status);
 }
 

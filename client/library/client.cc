@@ -119,6 +119,7 @@ absl::StatusOr<v1::EnsembleJob> Client::Get(const std::string& name) const {
 absl::StatusOr<std::vector<v1::EnsembleJob>> Client::List(v1::ListEnsembleJobsRequest request,
                                                           int64_t most) const {
   std::vector<v1::EnsembleJob> jobs;
+  if (most <= 0) return jobs;
   request.clear_page_token();
   do {
     const int64_t missing = most - std::ssize(jobs);

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <thread>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
@@ -79,11 +80,11 @@ uintmax_t EndOfLog(const ServerProgram& program) {
 absl::StatusOr<pid_t> StartProgram(const ServerProgram& program) {
   std::vector<std::string> command = {program.program, "--data-dir", program.folder};
   command.insert(command.end(), program.flags.begin(), program.flags.end());
-  unsetenv("BALLPISTON_TOKEN");  // the server does not need the user's secret
   return StartChild({.command = std::move(command),
                      .folder = program.run_in,
                      .output = program.Log(),
-                     .detached = true});
+                     .detached = true,
+                     .without = "BALLPISTON_TOKEN"});  // the user's secret
 }
 
 // The last line from this place on; empty if there is none, or if the log is a device.
@@ -117,9 +118,10 @@ absl::Status Failure(const ServerProgram& program, uintmax_t log_start,
   const auto code = exit_status == kWrongFlags     ? absl::StatusCode::kInvalidArgument
                     : exit_status == kNotPermitted ? absl::StatusCode::kPermissionDenied
                                                    : absl::StatusCode::kUnavailable;
-  const std::string what = exit_status
-                               ? absl::StrCat("ended at once with exit status ", *exit_status)
-                               : "does not answer";
+  const std::string what = !exit_status ? "does not answer"
+                           : exit_status == kUnknownStatus
+                               ? "ended at once"
+                               : absl::StrCat("ended at once with exit status ", *exit_status);
   return absl::Status(code, absl::StrCat("the server ", program.program, " ", what, ": ", last,
                                          "\n  log: ", program.Log()));
 }
@@ -166,6 +168,8 @@ absl::StatusOr<std::string> StartServer(const ServerProgram& program, absl::Dura
     if (server && (server->pid != 0 || exit_status)) address = server->address;
     return !address.empty() || (exit_status && !server);
   });
+  // A long-lived program keeps no zombie of a server that ends.
+  if (!exit_status) std::thread([pid] { WaitForChild(*pid).IgnoreError(); }).detach();
   if (!address.empty()) return address;
   return Failure(program, log_start, exit_status);
 }

@@ -153,12 +153,12 @@ ContactCurrentsTable::ContactCurrentsTable(const TestFunction& f) : f_(f) {
 }
 
 const ContactCurrentsTable& ContactCurrentsTable::OfChain() {
-  static const ContactCurrentsTable table(kChainTestFunction);
+  static const auto& table = *new ContactCurrentsTable(kChainTestFunction);  // is never destroyed
   return table;
 }
 
 const ContactCurrentsTable& ContactCurrentsTable::OfLattice() {
-  static const ContactCurrentsTable table(kLatticeTestFunction);
+  static const auto& table = *new ContactCurrentsTable(kLatticeTestFunction);
   return table;
 }
 

@@ -26,10 +26,10 @@ inline constexpr double kMaxBudgetSeconds = 1e6;
 // At most one of the numbers is set, except that a budget and a tolerance may be set together. If
 // none is set, the target is kDefaultSamples samples.
 struct Target {
-  std::optional<int64_t> samples = {};     // a point
-  std::optional<int64_t> collisions = {};  // a point: the samples expected to have so many
-  std::optional<double> tolerance = {};    // relative standard error of the first estimate
-  std::optional<double> budget_seconds = {};
+  std::optional<int64_t> samples = {};        // a point
+  std::optional<int64_t> collisions = {};     // a point: the samples expected to have so many
+  std::optional<double> tolerance = {};       // relative standard error of the first estimate
+  std::optional<double> budget_seconds = {};  // the caller measures it and calls PointFold::Finish
   // The name of the estimate that the tolerance and the choice of the model refer to. It is the
   // first estimate of the answer. Empty: the experiment's first aim (experiment_kind.h).
   std::string estimate = {};

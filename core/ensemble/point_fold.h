@@ -125,7 +125,7 @@ class LocalPoint : private BlockQueue {
   ChunkFold chunks_;
 };
 
-// Computes a whole point on the calling thread.
+// Computes a whole point on the calling thread. The target has no budget, which nothing would end.
 BlockResult FoldPoint(const PointExperiment& experiment);
 
 // Computes one block on the calling thread.

@@ -48,7 +48,7 @@ class EnergyLaw {
   };
   Start From(double epsilon) const;  // in [0, 1/2]
 
-  // The probability of each bin, for t >= 0.
+  // The probability of each bin, for t from 0 to 1e18.
   std::vector<double> Probabilities(const Start& start, double t) const;
 
  private:

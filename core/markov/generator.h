@@ -31,6 +31,10 @@
 
 namespace ballpiston {
 
+// A program frees memory that the library allocates. Eigen does both according to the alignment,
+// which depends on the instruction set.
+static_assert(EIGEN_DEFAULT_ALIGN_BYTES == 16, "compile without -mavx and -march=native");
+
 inline constexpr double kGeneratorRoundingError = 1e-13;
 
 // The lower end of the continuum of -L: the least jump rate, at u = 0.

@@ -13,12 +13,12 @@ namespace ballpiston {
 
 struct Histogram {
   double lower = 0;
-  double upper = 0;
+  double upper = 0;  // more than `lower`
   std::vector<uint64_t> counts;
 
   static Histogram OfBins(double lower, double upper, size_t bins);
 
-  size_t BinOf(double x) const;
+  size_t BinOf(double x) const;  // x is not NaN
   void Add(double x) { ++counts[BinOf(x)]; }
   // Requires the same bins on both sides.
   void Merge(const Histogram& other);

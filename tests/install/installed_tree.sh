@@ -25,7 +25,7 @@ export PATH=$prefix/bin:$PATH
 
 for example in cpp-client cpp-engine; do
   expect "Build files" cmake -S "$prefix/share/ballpiston/examples/$example" -B "$work/$example" \
-    -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_FLAGS="-Wall -Wextra -Wpedantic -Werror"
+    -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_FLAGS="-Wall -Wextra -Wpedantic -Werror -march=native"
   expect "Built target" cmake --build "$work/$example"
 done
 expect "delta 0.1: mean_hit_time" "$work/cpp-client/sweep"
@@ -36,8 +36,35 @@ expect "delta 0.1: mean_free_time_conditional" "$work/cpp-engine/engine"
   sed 's/.*/#include <&>/') >"$work/all.cc"
 pkg=$(dirname "$(find "$prefix" -name ballpiston-core.pc)")
 # shellcheck disable=SC2046
-g++ -fsyntax-only "$work/all.cc" \
+g++ -std=c++20 -fsyntax-only "$work/all.cc" \
   $(PKG_CONFIG_PATH=$pkg pkg-config --cflags ballpiston-core ballpiston-client)
+
+# In a shared library, compiled for this processor: the same bits.
+cat >"$work/flow.cc" <<'END'
+#include <ballpiston/core/billiard/event_flow.h>
+#include <ballpiston/core/sampling/invariant_measure.h>
+
+#include <iostream>
+
+int main() {
+  using namespace ballpiston;
+  const PairGeometry pair = *PairGeometry::Create(0.5296, 0.2);
+  CounterRandom random(1, 2, 3);
+  ReferenceFlow flow(pair, DrawFromFlowMeasure(pair, random));
+  double time = 0;
+  for (int i = 0; i < 30; ++i) {
+    const auto event = flow.Step();
+    time += event.duration;
+    if (event.kind == EventKind::kBallPiston) flow.ExchangeComponents();
+  }
+  std::cout << std::hexfloat << time;
+}
+END
+read -ra flags < <(PKG_CONFIG_PATH=$pkg pkg-config --cflags --libs ballpiston-core)
+g++ -std=c++20 "$work/flow.cc" "${flags[@]}" -o "$work/flow"
+g++ -std=c++20 -O2 -march=native -fPIC -shared "$work/flow.cc" "${flags[@]}" -o "$work/flow.so"
+g++ "$work/flow.so" -o "$work/native-flow"
+expect "$("$work/flow")" "$work/native-flow"
 
 expect result.csv ballpiston run conditional-mean-free-time --rho 0.5296 \
   --delta 0.1 --epsilon 0.1 --save "$work/result.csv"

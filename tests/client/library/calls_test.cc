@@ -58,6 +58,8 @@ TEST_F(ClientTest, ListStopsAtItsLimit) {
   const auto asked = server_.ensemble.Asked().list;
   ASSERT_EQ(asked.size(), 2u);  // pages of two
   EXPECT_EQ(asked[1].page_size(), 1);
+  EXPECT_OK(client.List(request, 0));
+  EXPECT_THAT(server_.ensemble.Asked().list, SizeIs(2));
 }
 
 TEST_F(ClientTest, APinIsRepeated) {

@@ -89,9 +89,11 @@ class ServerProcessTest : public ::testing::Test {
 };
 
 TEST_F(ServerProcessTest, GetsItsFlagsInItsFolder) {
-  ServerProgram program = Program("pwd; printf '<%s>' \"$@\"; exit 1");
+  const ScopedVariable token("BALLPISTON_TOKEN", "secret");  // not for the server
+  ServerProgram program = Program("pwd; printf '<%s>' \"$@\" \"$BALLPISTON_TOKEN\"; exit 1");
   EXPECT_THAT(StartServer(program), StatusIs(absl::StatusCode::kUnavailable));
-  EXPECT_EQ(Contents(program.Log()), "/\n<--data-dir><" + data_ + "><--flag><a b>");
+  EXPECT_EQ(Contents(program.Log()), "/\n<--data-dir><" + data_ + "><--flag><a b><>");
+  EXPECT_STREQ(std::getenv("BALLPISTON_TOKEN"), "secret");
   program.run_in = data_;
   EXPECT_THAT(StartServer(program), StatusIs(absl::StatusCode::kUnavailable));
   EXPECT_THAT(Contents(program.Log()), HasSubstr(">" + data_ + "\n<"));
@@ -104,6 +106,10 @@ TEST_F(ServerProcessTest, ErrorQuotesTheLastLineOfAProgramThatEnds) {
                HasSubstr("ended at once with exit status 9: the disk is full\n  log: " + data_)));
   EXPECT_THAT(StartServer(Program("exit 9")),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("(it wrote nothing)")));
+  const auto old = signal(SIGCHLD, SIG_IGN);  // the system then keeps no exit status
+  EXPECT_THAT(StartServer(Program("exit 9")),
+              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("ended at once: (it wrote")));
+  signal(SIGCHLD, old);
 }
 
 TEST_F(ServerProcessTest, ErrorSaysThatTheLogCannotBeWritten) {
@@ -158,6 +164,7 @@ TEST_F(ServerProcessTest, ErrorNamesAServerThatIsStillStopping) {
               StatusIs(absl::StatusCode::kDeadlineExceeded,
                        EndsWith(absl::StrCat("(process ", pid, ") is still stopping"))));
   kill(pid, SIGKILL);
+  AwaitThat([&] { return kill(pid, 0) != 0; });  // it remains no zombie
 }
 
 TEST_F(ServerProcessTest, WithoutAServerNothingIsStopped) {

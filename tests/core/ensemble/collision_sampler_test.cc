@@ -7,6 +7,8 @@
 namespace ballpiston {
 namespace {
 
+static_assert(!std::is_move_constructible_v<CollisionSampler>);
+
 std::vector<CollisionRecord> AllRecords(
     const PointExperiment& point, const ExperimentKind& kind,
     const std::function<bool()>& pause = [] { return false; }) {
