@@ -114,6 +114,11 @@ absl::StatusOr<std::unique_ptr<OrbitsOnDevice>> OpenDevice(const ServerOptions& 
       });
 }
 
+// Names the server on its cluster. A copy of the store, restored elsewhere, is another server.
+std::string IdentityOf(const Store& store, const DataDirectory& directory) {
+  return absl::StrCat(store.identity(), "-", directory.Number());
+}
+
 absl::Status CannotListen(const ListenAddress& address) {
   return absl::FailedPreconditionError(absl::StrCat(
       "--listen=", address.Text(),
@@ -171,10 +176,11 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       device_(std::move(device)),
       threads_(scheduler_, options_.workers, options_.cluster ? kLeaseBesideACluster : kWholePoint,
                crashes_, device_.get()),
-      cluster_(options_.cluster ? std::make_unique<Cluster>(scheduler_, *options_.cluster,
-                                                            options_.slurm, store_->identity(),
-                                                            [this] { return store_->Flush(); })
-                                : nullptr),
+      cluster_(options_.cluster
+                   ? std::make_unique<Cluster>(scheduler_, *options_.cluster, options_.slurm,
+                                               IdentityOf(*store_, directory_),
+                                               [this] { return store_->Flush(); })
+                   : nullptr),
       quotas_(options_.limits),
       streams_(door_->authenticator(), options_.watch.heartbeat, draining_),
       context_{door_->authenticator(),
@@ -273,8 +279,8 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   const auto deadline = std::chrono::system_clock::now() + drain;
   if (grpc_ != nullptr) grpc_->GetHealthCheckService()->Shutdown();
   draining_ = true;
-  limits_.reset();
   book_.Shutdown();
+  limits_.reset();
   Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <time.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -57,12 +58,14 @@ void UseAllDescriptors() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+std::atomic<bool> is_deaf = false;  // the server has stopped listening
+
 // The only message of gRPC that the log contains.
-void LogEndOfListening(gpr_log_func_args* message) {
-  if (!absl::StartsWith(message->message, "Failed accept")) return;
+void NoteEndOfListening(gpr_log_func_args* message) {
+  if (!absl::StartsWith(message->message, "Failed accept") || is_deaf.exchange(true)) return;
   LogError(
-      absl::StrCat("the server accepts no more connections; raise its limit of open files and "
-                   "restart it (",
+      absl::StrCat("the server can accept no more connections and ends: start it again, with "
+                   "a higher limit of open files (",
                    message->message, ")"));
 }
 
@@ -76,7 +79,7 @@ void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer
   while (true) {
     const int signal = sigtimedwait(&signals, nullptr, &kLookInterval);
     if (signal == SIGHUP) Reload(server);
-    if (signal == SIGTERM || signal == SIGINT) break;
+    if (signal == SIGTERM || signal == SIGINT || is_deaf) break;
     if (line.idle_exit.count() > 0 && server.IdleFor() >= line.idle_exit) {
       return LogInfo("the server is idle: stopping");
     }
@@ -84,12 +87,14 @@ void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer
   LogInfo("stopping");
 }
 
+int ExitCode() { return is_deaf ? kExitTryAgain : 0; }
+
 // Ends the process after this time. Everything that was acknowledged is on disk by then.
 void ExitAfter(std::chrono::milliseconds limit, const BallpistonServer& server) {
   std::thread([limit, &server] {
     std::this_thread::sleep_for(limit);
     server.LeaveDataFolder();
-    std::_Exit(0);
+    std::_Exit(ExitCode());
   }).detach();
 }
 
@@ -127,7 +132,7 @@ std::string StoreIn(const CommandLine& line) {
 
 int Main(int argc, char** argv) {
   StartProcess();
-  if (std::getenv("GRPC_VERBOSITY") == nullptr) gpr_set_log_function(&LogEndOfListening);
+  if (std::getenv("GRPC_VERBOSITY") == nullptr) gpr_set_log_function(&NoteEndOfListening);
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());
   if (!line->page.empty()) return Print(line->page);
@@ -152,7 +157,7 @@ int Main(int argc, char** argv) {
   (*server)->LeaveDataFolder();
   // Skips the destructors: after large answers gRPC may wait 10 s for one of its threads.
   std::fflush(nullptr);
-  std::_Exit(0);
+  std::_Exit(ExitCode());
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ class ReattachPace {
 
   // The watch received a message: the pauses and the time until it gives up start again.
   void Heard() {
-    heard_ = Clock::now();
+    lost_.reset();
     backoff_ = options_.initial_backoff;
   }
 
@@ -50,7 +50,8 @@ class ReattachPace {
   std::optional<absl::Duration> NextPause(absl::Duration least) {
     const absl::Duration pause = std::max(backoff_, least) * absl::Uniform(random_, 1.0, 1.25);
     backoff_ = std::min(2 * backoff_, options_.max_backoff);
-    const absl::Duration silence = absl::FromChrono(Clock::now() - heard_);
+    if (!lost_) lost_ = Clock::now();
+    const absl::Duration silence = absl::FromChrono(Clock::now() - *lost_);
     if (silence + pause > options_.give_up_after) return std::nullopt;
     return pause;
   }
@@ -59,7 +60,8 @@ class ReattachPace {
   using Clock = std::chrono::steady_clock;
 
   const WatchOptions& options_;
-  Clock::time_point heard_;
+  // When the stream broke. Not the last message: this process itself may have slept since then.
+  std::optional<Clock::time_point> lost_;
   absl::Duration backoff_;
   absl::InsecureBitGen random_;
 };

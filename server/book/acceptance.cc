@@ -3,7 +3,6 @@
 #include "absl/strings/str_cat.h"
 #include "server/convert/spec.h"
 #include "server/sha256.h"
-#include "server/store/sweeper.h"
 
 namespace ballpiston::server {
 namespace {
@@ -34,11 +33,10 @@ void CheckLoad(Database& database, const Limits& limits, const v1::EnsembleJob& 
 
 // Refuses the job if pinned and active jobs alone exceed the limit. All other jobs are removed when
 // the store is full (retention.cc).
-void CheckStoreSize(Database& database, const Limits& limits) {
-  const int64_t used = UsedBytes(database);
-  if (limits.max_store_bytes == 0 || used <= limits.max_store_bytes) return;
-  const int64_t kept = used - RemovableBytes(database);
-  if (kept <= limits.max_store_bytes || IsSweeping(database)) return;
+void CheckStoreSize(Database& database, const Limits& limits, int64_t active_bytes) {
+  if (limits.max_store_bytes == 0) return;
+  const int64_t kept = active_bytes + PinnedBytes(database, "");
+  if (kept <= limits.max_store_bytes) return;
   database.Fail(LimitExceeded("TOO_MANY_STORED_BYTES",
                               absl::StrCat("pinned and active jobs take ", kept,
                                            " bytes: wait until some have ended, or unpin some"),
@@ -121,7 +119,7 @@ std::optional<JobRecord> Accept(Database& database, const Limits& limits, Accept
   }
   if (!acceptance.violations.empty()) database.Fail(InvalidSpec(acceptance.violations));
   CheckLoad(database, limits, record.job);
-  CheckStoreSize(database, limits);
+  CheckStoreSize(database, limits, acceptance.active_bytes);
   if (!acceptance.fresh) Continue(database, acceptance);
   InsertJob(database, record);
   return std::nullopt;

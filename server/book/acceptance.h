@@ -37,6 +37,7 @@ struct Acceptance {
   // a tolerance, a budget, or a model without samples.
   double samples = 0;
   std::vector<FieldViolation> violations;  // what this machine cannot do
+  int64_t active_bytes = 0;  // of all active jobs; not set without a bound of the store
 };
 
 // Returns the earlier job that answers the request. answered_from_store is true if the job answers

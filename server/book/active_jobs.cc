@@ -63,6 +63,13 @@ size_t ActiveJobs::size() const {
   return jobs_.size();
 }
 
+int64_t ActiveJobs::bytes() const {
+  MutexLock lock(mutex_);
+  int64_t bytes = 0;
+  for (const auto& [id, job] : jobs_) bytes += job->Numbers().bytes;
+  return bytes;
+}
+
 EndedJobs ActiveJobs::ended() const {
   MutexLock lock(mutex_);
   return ended_;

@@ -56,6 +56,7 @@ class ActiveJobs {
   void StopWaiting();
 
   size_t size() const;
+  int64_t bytes() const;  // in the store, without checkpoints
   EndedJobs ended() const;
 
  private:

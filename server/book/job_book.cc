@@ -79,10 +79,11 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   job.set_priority(request.priority());
   *job.mutable_labels() = request.labels();
   job.mutable_progress()->set_points(static_cast<int32_t>(PointCount(checked.spec)));
-  SetNumbers({.bytes = static_cast<int64_t>(job.spec().ByteSizeLong())}, job);
+  SetNumbers({.bytes = BytesOfJob(job.spec())}, job);
   acceptance.fresh = request.fresh();
   acceptance.samples = SamplesOfAllPoints(checked.spec);
   acceptance.violations = checked.violations;
+  if (limits_.max_store_bytes > 0) acceptance.active_bytes = active_.bytes();
   return acceptance;
 }
 
@@ -185,8 +186,9 @@ namespace {
 // store, which has to have room for others. An active job counts with the results that it has.
 void CheckPin(Database& database, const Limits& limits, const v1::EnsembleJob& job) {
   const int64_t most = limits.max_store_bytes / 2;
+  if (most == 0) return;
   const int64_t pinned = PinnedBytes(database, job.principal()) + StoredBytesOf(job);
-  if (most == 0 || pinned <= most) return;
+  if (pinned <= most) return;
   database.Fail(
       LimitExceeded("TOO_MANY_PINNED_BYTES",
                     absl::StrCat(job.principal(), "'s pinned jobs would take ", pinned,

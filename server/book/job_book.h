@@ -135,8 +135,9 @@ class JobBook {
 
   // ---- how long results are kept (retention.cc), and what the server's status shows ----
 
-  // Lets results expire and deletes expired jobs, as the limits require at the time `now`. One call
-  // handles at most a few hundred jobs. Call about once a second, from one thread at a time.
+  // Lets results expire and deletes expired jobs, as the limits require at the time `now`. Returns
+  // when nothing is left to do, or at a shutdown. Call about once a second, from one thread at a
+  // time.
   void KeepLimits(absl::Time now);
 
   // Jobs whose results expire within a week. 0 if the store cannot be read.
@@ -154,7 +155,8 @@ class JobBook {
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id, Grid grid);
   // Adds the numbers in memory. If the job has ended since its row was read, reads the row again.
   absl::StatusOr<FoundJob> WithNumbers(const Principal& caller, JobRecord record, Grid grid);
-  absl::Status EnforceRetention(absl::Time now);
+  // The number of jobs or their results that were removed. 0: nothing is left to do.
+  absl::StatusOr<size_t> EnforceRetention(absl::Time now);
 
   Store& store_;
   const Limits limits_;

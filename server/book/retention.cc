@@ -7,6 +7,7 @@
 // results of the principal that stores most expire first.
 // The data of active and pinned jobs are never removed here, so the store may grow beyond the
 // bound; if they alone exceed it, no new job is accepted (acceptance.h).
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -20,7 +21,9 @@
 namespace ballpiston::server {
 namespace {
 
+// Of a commit, which other writes wait for: each row is written anew, with its grid.
 constexpr int kMostAtOnce = 256;
+constexpr int64_t kMostBytesAtOnce = 8 << 20;
 constexpr absl::Duration kSoonToExpire = absl::Hours(7 * 24);
 
 // Space is freed before the bound is reached, so that the store seldom exceeds it.
@@ -42,52 +45,55 @@ std::vector<JobSize> EnoughOf(std::vector<JobSize> jobs, int64_t bytes) {
 Removal TooOld(Database& database, const Limits& limits, absl::Time now) {
   if (limits.retain_days == 0) return {};
   const absl::Time ended = now - absl::Hours(24) * limits.retain_days;
-  return {.jobs = ListRemovable(database, Removable::kResults, ended, "", kMostAtOnce)};
+  auto jobs = ListRemovable(database, Removable::kResults, ended, "", kMostAtOnce);
+  return {.jobs = EnoughOf(std::move(jobs), kMostBytesAtOnce)};
 }
 
 // Rows that the sweeper has still to remove take pages, so nothing more expires meanwhile.
 Removal TooMuch(Database& database, const Limits& limits) {
   if (limits.max_store_bytes == 0 || IsSweeping(database)) return {};
   const auto most = static_cast<int64_t>(kFullShare * static_cast<double>(limits.max_store_bytes));
-  const int64_t used = UsedBytes(database);
-  if (used <= most) return {};
+  const int64_t excess = std::min(UsedBytes(database) - most, kMostBytesAtOnce);
+  if (excess <= 0) return {};
   for (const std::string& principal : PrincipalsBySize(database)) {
     for (const Removable what : {Removable::kResults, Removable::kJobs}) {
       auto jobs = ListRemovable(database, what, absl::InfiniteFuture(), principal, kMostAtOnce);
-      if (!jobs.empty()) return {what, EnoughOf(std::move(jobs), used - most)};
+      if (!jobs.empty()) return {what, EnoughOf(std::move(jobs), excess)};
     }
   }
   return {};
 }
 
 // A job may have been pinned or deleted since it was found: then this has no effect on it.
-absl::Status Remove(Store& store, const Removal& removal) {
-  const bool whole = removal.what == Removable::kJobs;
-  const absl::Status committed = store.CommitDeletion([&](Database& database) {
+absl::StatusOr<size_t> Remove(Store& store, const Removal& removal) {
+  return store.CommitDeletion([&](Database& database) {
     for (const JobSize& job : removal.jobs) {
-      (whole ? DeleteJob : ExpireJob)(database, job.sequence);
+      (removal.what == Removable::kJobs ? DeleteJob : ExpireJob)(database, job.sequence);
     }
+    return removal.jobs.size();
   });
-  if (committed.ok()) {
-    LogInfo(absl::StrCat(whole ? "expired jobs were deleted: " : "results of jobs expired: ",
-                         removal.jobs.size()));
-  }
-  return committed;
 }
 
 }  // namespace
 
-absl::Status JobBook::EnforceRetention(absl::Time now) {
+absl::StatusOr<size_t> JobBook::EnforceRetention(absl::Time now) {
   const auto removal = store_.Read([&](Database& database) {
     Removal old = TooOld(database, limits_, now);
     return old.jobs.empty() ? TooMuch(database, limits_) : old;
   });
-  if (!removal.ok() || removal->jobs.empty()) return removal.status();
-  return Remove(store_, *removal);
+  if (!removal.ok()) return removal.status();
+  return removal->jobs.empty() ? size_t{0} : Remove(store_, *removal);
 }
 
 void JobBook::KeepLimits(absl::Time now) {
-  const absl::Status kept = EnforceRetention(now);
+  absl::StatusOr<size_t> removed;
+  size_t all = 0;
+  do {
+    removed = EnforceRetention(now);
+    all += removed.value_or(0);
+  } while (removed.value_or(0) > 0 && store_.AwaitSwept());
+  if (all > 0) LogInfo(absl::StrCat("results expired or expired jobs were deleted: ", all));
+  const absl::Status kept = removed.status();
   const bool is_new = std::exchange(limits_failure_, kept) != kept;
   if (is_new && !kept.ok() && !store_.failing()) {
     LogError(absl::StrCat("the limits on stored results cannot be enforced: ", kept.message()));

@@ -60,6 +60,9 @@ absl::Status Append(const NamedFile& file, const std::string& line) {
   if (!list.ok()) return list.status();
   const bool unended = !text->empty() && text->back() != '\n';
   const std::string added = absl::StrCat(unended ? "\n" : "", line, "\n");
+  if (text->size() + added.size() > kMaxSecurityFile) {
+    return Unusable(file, "has no room for one more token: remove old ones");
+  }
   const absl::Status written = WriteAllOrNothing(file, descriptor, added);
   // Flushes the folder too, so that the entry of a printed token survives a power cut.
   return written.ok() ? SyncNameOf(file.path) : written;

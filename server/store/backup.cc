@@ -1,6 +1,7 @@
 #include "server/store/backup.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -35,6 +36,27 @@ absl::Status CheckIsFree(const std::string& target) {
       absl::StrCat("backup ", target, ": the file exists already; choose another name"));
 }
 
+// The copy, and what SQLite writes beside it, until the copy is complete.
+struct UnfinishedCopy {
+  std::string file, journal = file + "-journal";
+
+  void Remove() const {
+    unlink(file.c_str());
+    unlink(journal.c_str());
+  }
+};
+const UnfinishedCopy* unfinished = nullptr;
+
+// Of a signal that ends the program.
+void RemoveUnfinished(int signal) {
+  unfinished->Remove();
+  _exit(128 + signal);
+}
+
+void HandleSignals(void (*handler)(int)) {
+  for (const int ending : {SIGHUP, SIGINT, SIGTERM}) signal(ending, handler);
+}
+
 }  // namespace
 
 absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::string& target) {
@@ -45,12 +67,22 @@ absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::st
   std::string copy = target + ".XXXXXX";
   const int file = mkostemp(copy.data(), O_CLOEXEC);  // for its owner only
   if (file < 0) return CannotWrite(target, errno);
+  const UnfinishedCopy made{copy};
+  unfinished = &made;
+  HandleSignals(&RemoveUnfinished);
   const absl::Cleanup remove = [&] {
+    HandleSignals(SIG_DFL);
     close(file);
-    unlink(copy.c_str());
+    made.Remove();
   };
   (*source)->Run("VACUUM INTO ?", copy);  // it is not in WAL mode and has no free pages
-  if (!(*source)->status().ok()) return (*source)->TakeStatus();
+  const absl::Status copied = (*source)->TakeStatus();
+  if (IsOfTheDisk(copied)) {
+    return absl::Status(copied.code(),
+                        absl::StrCat("backup ", target, " was not made (", copied.message(),
+                                     "); check its disk, and that of store ", store));
+  }
+  if (!copied.ok()) return copied;
   absl::StatusOr<StoreSummary> summary = CheckStore(copy);
   if (!summary.ok()) return summary.status();
   if (!summary->sound()) {

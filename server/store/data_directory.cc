@@ -179,6 +179,11 @@ void DataDirectory::Leave() const {
   EmptyLock(lock_);
 }
 
+uint64_t DataDirectory::Number() const {
+  struct stat found {};
+  return stat(path_.c_str(), &found) == 0 ? found.st_ino : 0;
+}
+
 void DataDirectory::TellAddress(const std::string& address) const {
   std::ofstream(AddressFile(path_)) << address << "\n";
 }

@@ -56,6 +56,9 @@ class DataDirectory {
   // destructors.
   void Leave() const;
 
+  // Names the folder in its file system, also after a move. A copy of the folder has another one.
+  uint64_t Number() const;
+
   const std::string& path() const { return path_; }
   std::string FilePath(const std::string& name) const { return path_ + "/" + name; }
 

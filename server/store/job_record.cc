@@ -11,7 +11,14 @@ namespace {
 // The latest time that a Timestamp can hold.
 constexpr absl::Time kLastTime = absl::FromUnixSeconds(253'402'300'799);
 
+// A job's row, and its entries in the indices, without the specification.
+constexpr int64_t kJobRow = 540;
+
 }  // namespace
+
+int64_t BytesOfJob(const v1::EnsembleSpec& spec) {
+  return kJobRow + static_cast<int64_t>(spec.ByteSizeLong());
+}
 
 v1::JobProgress ProgressOf(const v1::EnsembleJob& job, const JobNumbers& numbers) {
   const v1::Target& target = job.spec().target();

@@ -26,7 +26,7 @@ struct JobNumbers {
   int64_t points_done = 0;  // these are stored
   double samples = 0;
   double work = 0;             // seconds of processor time, in this or the last server process
-  int64_t bytes = 0;           // of the specification and the results
+  int64_t bytes = 0;           // in the store, of the job and its results
   double points_computed = 0;  // with the computed shares of unfinished points
 
   void Add(const JobNumbers& other) {
@@ -59,6 +59,9 @@ struct JobRecord {
 v1::JobProgress ProgressOf(const v1::EnsembleJob& job, const JobNumbers& numbers);
 
 void SetNumbers(const JobNumbers& numbers, v1::EnsembleJob& job);
+
+// The bytes of a job without results in the store, about.
+int64_t BytesOfJob(const v1::EnsembleSpec& spec);
 
 // The job's stored_bytes. 0 if a damaged row has a value that is not a number of bytes.
 int64_t StoredBytesOf(const v1::EnsembleJob& job);

@@ -11,6 +11,7 @@ namespace {
 constexpr char kActiveStates[] = "1, 2, 3";
 static_assert(v1::EnsembleJob::QUEUED == 1 && v1::EnsembleJob::RUNNING == 2 &&
               v1::EnsembleJob::CANCELLING == 3);
+static_assert(v1::EnsembleJob::SUCCEEDED == 4);
 
 // The schema has an index for each condition.
 const char* ConditionOf(Removable what) {
@@ -133,13 +134,13 @@ std::optional<JobRecord> FindAnswer(Database& database, const std::string& princ
                                     absl::FunctionRef<bool(const v1::EnsembleJob&)> accepts) {
   if (question.empty()) return std::nullopt;
   Query query =
-      database.Select(SelectJobs(Grid::kIncluded,
-                                 "principal = ? AND question = ? AND question <> x'' AND state = ?"
-                                 " AND expired = 0 ORDER BY sequence"),
-                      principal, Blob{question}, v1::EnsembleJob::SUCCEEDED);
+      database.Select(SelectJobs(Grid::kLeftOut,
+                                 "principal = ? AND question = ? AND question <> x'' AND state = 4"
+                                 " AND expired = 0 ORDER BY sequence LIMIT ?"),
+                      principal, Blob{question}, kMostAnswers);
   while (query.Next()) {
-    JobRecord record = RecordOf(query);
-    if (accepts(record.job)) return record;
+    const JobRecord record = RecordOf(query);
+    if (accepts(record.job)) return FindJobBySequence(database, record.sequence);
   }
   return std::nullopt;
 }
@@ -147,9 +148,9 @@ std::optional<JobRecord> FindAnswer(Database& database, const std::string& princ
 std::vector<JobRecord> FindFamily(Database& database, const std::string& principal,
                                   const std::string& family) {
   return AllJobs(database, Grid::kLeftOut,
-                 "principal = ? AND family = ? AND family <> x'' AND state = ?"
+                 "principal = ? AND family = ? AND family <> x'' AND state = 4"
                  " AND expired = 0 ORDER BY samples DESC, sequence LIMIT ?",
-                 principal, Blob{family}, v1::EnsembleJob::SUCCEEDED, kMostOfAFamily);
+                 principal, Blob{family}, kMostOfAFamily);
 }
 
 Load ActiveLoad(Database& database, const std::string& principal) {
@@ -247,15 +248,6 @@ int64_t CountExpirable(Database& database, absl::Time ended_before) {
                           ended_before);
 }
 
-int64_t RemovableBytes(Database& database) {
-  int64_t bytes = 0;
-  for (const Removable what : {Removable::kResults, Removable::kJobs}) {
-    bytes +=
-        database.Integer(absl::StrCat("SELECT sum(bytes) FROM jobs WHERE ", ConditionOf(what)));
-  }
-  return bytes;
-}
-
 std::vector<std::string> PrincipalsBySize(Database& database) {
   std::vector<std::string> principals;
   Query query =
@@ -265,7 +257,7 @@ std::vector<std::string> PrincipalsBySize(Database& database) {
 }
 
 int64_t PinnedBytes(Database& database, const std::string& principal) {
-  return database.Integer("SELECT sum(bytes) FROM jobs WHERE principal = ? AND pinned = 1",
+  return database.Integer("SELECT sum(bytes) FROM jobs WHERE pinned = 1 AND ? IN ('', principal)",
                           principal);
 }
 
@@ -273,7 +265,7 @@ void ExpireJob(Database& database, int64_t sequence) {
   std::optional<JobRecord> record = FindJobBySequence(database, sequence);
   if (!record || record->job.pinned()) return;
   record->job.set_results_expired(true);
-  record->job.set_stored_bytes(static_cast<double>(record->job.spec().ByteSizeLong()));
+  record->job.set_stored_bytes(static_cast<double>(BytesOfJob(record->job.spec())));
   UpdateJob(database, *record);
   DropResults(database, sequence);
 }

@@ -50,7 +50,8 @@ std::optional<JobRecord> FindJobOfCancellation(Database& database, const std::st
                                                const std::string& request_id);
 
 // The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question) and for
-// which `accepts` returns true.
+// which `accepts` returns true, given the job without its grid. Asks for the kMostAnswers oldest.
+inline constexpr int kMostAnswers = 1'000;
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
                                     const std::string& question,
                                     absl::FunctionRef<bool(const v1::EnsembleJob&)> accepts);
@@ -103,7 +104,7 @@ void RestartJob(Database& database, const JobRecord& record);
 
 struct JobSize {
   int64_t sequence = 0;
-  int64_t bytes = 0;  // of the specification and the results
+  int64_t bytes = 0;  // JobNumbers::bytes
 };
 
 // Retention (book/retention.cc) may remove the results of jobs that have ended and are not pinned,
@@ -115,10 +116,10 @@ enum class Removable { kResults, kJobs };
 std::vector<JobSize> ListRemovable(Database& database, Removable what, absl::Time ended_before,
                                    const std::string& principal, int most);
 int64_t CountExpirable(Database& database, absl::Time ended_before);  // Removable::kResults
-int64_t RemovableBytes(Database& database);                           // of both kinds
 
 // The principals with jobs; those with the most stored bytes come first.
 std::vector<std::string> PrincipalsBySize(Database& database);
+// Of one principal or, if it is empty, of all. An active job counts without its results.
 int64_t PinnedBytes(Database& database, const std::string& principal);
 
 // After these two, the sweeper removes the results (sweeper.h); nobody can find them meanwhile.

@@ -84,9 +84,9 @@ int64_t CountResults(Database& database, int64_t job) {
 std::vector<PointSize> ListFinishedPoints(Database& database, int64_t job) {
   std::vector<PointSize> points;
   Query query = database.Select(
-      "SELECT point, samples, length(result) + length(details) + length(continuation) FROM results"
-      " WHERE job = ? ORDER BY point",
-      job);
+      "SELECT point, samples, ? + length(result) + length(details) + length(continuation)"
+      " FROM results WHERE job = ? ORDER BY point",
+      kResultRow, job);
   while (query.Next()) {
     PointSize& point = points.emplace_back();
     query.ReadInto(point.point, point.samples, point.bytes);

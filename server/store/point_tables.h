@@ -34,6 +34,9 @@ struct PointEnd {
   std::string state;  // a compressed storage.Checkpoint; empty: the point cannot be continued
 };
 
+// What a row of the results takes beside its values, with its entries in the indices.
+inline constexpr size_t kResultRow = 60;
+
 struct PointRow {
   int64_t point = 0;
   double samples = 0;
@@ -43,7 +46,7 @@ struct PointRow {
   bool has_checkpoint = true;  // may have a checkpoint or chunks
   PointEnd end = {};           // not read with the results
 
-  size_t bytes() const { return result.size() + details.size() + end.state.size(); }
+  size_t bytes() const { return kResultRow + result.size() + details.size() + end.state.size(); }
 };
 
 // Stores a point's result and drops its checkpoint and chunks. The first writer wins. Returns the

@@ -10,7 +10,7 @@
 
 namespace ballpiston::server {
 
-inline constexpr int64_t kSchemaVersion = 13;
+inline constexpr int64_t kSchemaVersion = 14;
 inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 
 // The connection that writes and checkpoints. Checks an existing store; creates a store if there is

@@ -175,6 +175,4 @@ std::string Database::FileStart(int bytes) {
 
 int64_t Database::LastInsertedRow() const { return sqlite3_last_insert_rowid(connection_); }
 
-int64_t Database::RowsChanged() const { return sqlite3_changes64(connection_); }
-
 }  // namespace ballpiston::server

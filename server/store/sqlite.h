@@ -174,7 +174,6 @@ class Database {
   std::string FileStart(int bytes);
 
   int64_t LastInsertedRow() const;
-  int64_t RowsChanged() const;  // by the last statement that was run
 
  private:
   friend class Query;

@@ -16,12 +16,18 @@ absl::Status Stalled() {
   return absl::UnavailableError("store: the disk does not answer; retry later");
 }
 
+std::string ReserveOf(const std::string& path) { return path + "-reserve"; }
+
 absl::Status Closed() { return absl::UnavailableError("store: closed"); }
 
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Store>> Store::Open(const std::string& path, Options options) {
   auto writer = OpenStoreFile(path);
+  if (IsOfTheDisk(writer.status())) {  // a full disk has the room of the last server's reserve
+    Database::RemoveFile(ReserveOf(path));
+    writer = OpenStoreFile(path);
+  }
   if (!writer.ok()) return writer.status();
   auto identity = (*writer)->First<std::string>("SELECT identity FROM server");
   if (!(*writer)->status().ok()) return (*writer)->TakeStatus();
@@ -39,7 +45,7 @@ Store::Store(std::unique_ptr<Database> writer, Options options, const std::strin
              std::string identity)
     : options_(options),
       identity_(std::move(identity)),
-      reserve_path_(path + "-reserve"),
+      reserve_path_(ReserveOf(path)),
       writer_(std::move(writer)) {}
 
 void Store::Start() {
@@ -167,9 +173,10 @@ absl::Status Store::Flush() {
   return **outcome;
 }
 
-void Store::AwaitSwept() {
+bool Store::AwaitSwept() {
   MutexLock lock(mutex_);
-  while (next_sweep_ != kNever && !closing_) written_.Wait(mutex_);
+  while (!stop_waiting_ && !closing_ && next_sweep_ != kNever) written_.Wait(mutex_);
+  return !stop_waiting_ && !closing_;
 }
 
 bool Store::IsFull(size_t part) const {

@@ -121,8 +121,8 @@ class Store {
   // the disk fails or hangs.
   absl::Status Flush();
 
-  // For tests: returns when the space of all deletions so far is free.
-  void AwaitSwept();
+  // Returns when the space of all deletions so far is free. False: because of StopWaiting or Close.
+  bool AwaitSwept();
 
   // The last write failed because of the disk.
   bool failing() const;
@@ -130,7 +130,7 @@ class Store {
   // The store's thread has been at one group for longer than Options::stall: the disk hangs.
   bool stalled() const;
 
-  // For a shutdown: AwaitRoom and AwaitRetry no longer wait.
+  // For a shutdown: AwaitRoom, AwaitRetry and AwaitSwept no longer wait.
   void StopWaiting();
 
   // Writes what is pending, without a retry, and ends the thread. Later writes fail.

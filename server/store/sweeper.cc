@@ -8,12 +8,17 @@
 namespace ballpiston::server {
 namespace {
 
-void DropSome(Database& database, int64_t job) {
-  database.Run(
-      "DELETE FROM results WHERE rowid IN (SELECT rowid FROM results WHERE job = ? LIMIT ?)", job,
-      kSweptRows);
+// Removes rows of the first jobs, and forgets those of the jobs that have no row left.
+void DropSome(Database& database) {
+  const std::string first = "(SELECT job FROM dropped ORDER BY job LIMIT ?1)";
+  database.Run(absl::StrCat("DELETE FROM results WHERE rowid IN (SELECT results.rowid FROM ", first,
+                            " JOIN results USING (job) LIMIT ?1)"),
+               kSweptRows);
   Failpoint("sweep.in_transaction");
-  if (database.RowsChanged() == 0) database.Run("DELETE FROM dropped WHERE job = ?", job);
+  database.Run(
+      absl::StrCat("DELETE FROM dropped WHERE job IN ", first,
+                   " AND NOT EXISTS (SELECT 1 FROM results WHERE results.job = dropped.job)"),
+      kSweptRows);
 }
 
 bool ShortenFile(Database& database) {
@@ -27,13 +32,12 @@ bool ShortenFile(Database& database) {
 }  // namespace
 
 bool SweepStep(Database& database) {
-  const int64_t job = database.Integer("SELECT min(job) FROM dropped");
-  if (job == 0) return ShortenFile(database);
-  DropSome(database, job);
+  if (!IsSweeping(database)) return ShortenFile(database);
+  DropSome(database);
   return true;
 }
 
-bool IsSweeping(Database& database) { return database.Integer("SELECT count(*) FROM dropped") > 0; }
+bool IsSweeping(Database& database) { return database.Integer("SELECT min(job) FROM dropped") > 0; }
 
 int64_t UsedBytes(Database& database) {
   const int64_t pages =

@@ -50,7 +50,7 @@ std::optional<LeaseFileName> ParseDone(absl::string_view name);
 
 // The contents of the first part of a lease's file.
 struct LeaseFile {
-  std::string server;  // the identity of the server's data folder
+  std::string server;  // its identity
   // `run` and `generation` name the job, whose engine version is this program's. The spec is a
   // OnePointSpec, and `point` is the point's index in the job's grid. The message leaves out the
   // other fields of the lease, such as numbers and attempts.

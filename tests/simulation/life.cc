@@ -56,8 +56,8 @@ absl::Status Life::Start() {
 }
 
 Life::~Life() {
-  limits_.reset();
   if (book_ != nullptr) book_->Shutdown();
+  limits_.reset();
   threads_.reset();
   cluster_.reset();
   if (store_ != nullptr) store_->Flush().IgnoreError();

@@ -2,10 +2,10 @@
 waits or in an event loop.
 
 If the stream breaks, the watch attaches again with the last resume token that it saw, after pauses
-that double from 0.1 s to 5 s, or as long as the server's error says, until nothing was heard for
-two minutes. A stream is broken by UNAVAILABLE, by CANCELLED without a reason, as from a server that
-stops, by RESOURCE_EXHAUSTED with a reason, as from a server that is busy, and by an end without a
-terminal state. Every other error ends the watch.
+that double from 0.1 s to 5 s, or as long as the server's error says, until two minutes after the
+first broken stream without a message. A stream is broken by UNAVAILABLE, by CANCELLED without a
+reason, as from a server that stops, by RESOURCE_EXHAUSTED with a reason, as from a server that is
+busy, and by an end without a terminal state. Every other error ends the watch.
 """
 
 import asyncio
@@ -39,25 +39,27 @@ def has_ended(state: int) -> bool:
 class ReattachPace:
     """When a watch that lost its server attaches again, and when it gives up. Each pause is up to a
     quarter longer than needed, so that the watchers of a server that died do not return as one. The
-    caller passes all times, in seconds, so that tests need not wait."""
+    caller passes the time, in seconds, so that tests need not wait."""
 
     def __init__(
-        self, now: float, first: float = 0.1, longest: float = 5.0, give_up_after: float = 120.0
+        self, first: float = 0.1, longest: float = 5.0, give_up_after: float = 120.0
     ) -> None:
         self._first, self._longest, self.give_up_after = first, longest, give_up_after
-        self.heard(now)
+        self.heard()
 
-    def heard(self, now: float) -> None:
+    def heard(self) -> None:
         """The server said something: the pauses and the time to give up start again."""
-        self._heard = now
+        self._lost: float | None = None  # when the stream broke
         self._next = self._first
 
     def next_pause(self, now: float, least: float = 0.0) -> float | None:
         """Seconds before the next attempt, at least `least`; None if that would come after the time
-        to give up."""
+        to give up. That counts from the first call, not from the last message: this process itself
+        may have slept since then."""
+        self._lost = now if self._lost is None else self._lost
         pause = max(self._next, least) * random.uniform(1.0, 1.25)
         self._next = min(2 * self._next, self._longest)
-        return None if now - self._heard + pause > self.give_up_after else pause
+        return None if now - self._lost + pause > self.give_up_after else pause
 
 
 def watch_job(
@@ -92,13 +94,13 @@ class Attachments:
     """
 
     def __init__(self, name: str, pace: ReattachPace | None = None) -> None:
-        self._pace = pace or ReattachPace(time.monotonic())
+        self._pace = pace or ReattachPace()
         self.request = ensemble_pb2.WatchEnsembleJobRequest(name=name)
         self.ended: Any = None
 
     def handle(self, message: Any) -> None:
         """A message of a stream."""
-        self._pace.heard(time.monotonic())
+        self._pace.heard()
         if message.resume_token:
             self.request.resume_token = message.resume_token
         if has_ended(message.job.state):

@@ -186,6 +186,14 @@ TEST_F(JobWatch, TheTimeToGiveUpStartsAgainWithEveryMessage) {
   EXPECT_OK(Watch());
 }
 
+// As if this process had been stopped during the first stream.
+TEST_F(JobWatch, ASilenceBeforeTheStreamBreaksDoesNotCount) {
+  Start({Unavailable({SnapshotMessage(1, "t")}), Succeeded()});
+  options_.give_up_after = absl::Milliseconds(500);
+  after_snapshot_ = [] { std::this_thread::sleep_for(std::chrono::milliseconds(600)); };
+  EXPECT_OK(Watch());
+}
+
 TEST_F(JobWatch, StartsTheServerAgainBeforeEachNewAttempt) {
   Start({Unavailable(), Unavailable(), Succeeded()});
   int revivals = 0;

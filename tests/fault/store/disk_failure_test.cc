@@ -67,6 +67,25 @@ TEST_F(DiskFailure, ADiskErrorAtTheStartIsNotReportedAsDamage) {
   }
 }
 
+TEST_F(DiskFailure, AServerStartsOnADiskThatItsReserveFills) {
+  constexpr size_t kReserve = 4'000'000;
+  const std::string reserve = std::string(kStorePath) + "-reserve";
+  FaultDisk disk(DiskFiles{{reserve, std::string(kReserve, 'r')}});
+  disk.SetCapacity(kReserve);
+  EXPECT_OK(Store::Open(kStorePath, {}));
+}
+
+TEST_F(DiskFailure, ABackupThatASignalEndsLeavesNoFile) {
+  Open();  // makes the store
+  const TemporaryFolder folder;
+  disk_.SetBeforeOperation([&] {
+    if (!NamesIn(folder.path()).empty()) raise(SIGTERM);
+  });
+  EXPECT_EXIT(BackupStore(kStorePath, folder.File("copy")).IgnoreError(),
+              testing::ExitedWithCode(128 + SIGTERM), "");
+  EXPECT_THAT(NamesIn(folder.path()), testing::IsEmpty());
+}
+
 // Another program makes the file while the store is being copied.
 TEST_F(DiskFailure, ABackupDoesNotReplaceAFile) {
   Open();  // makes the store

@@ -185,6 +185,29 @@ TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
   ExpectSound();
 }
 
+// The rows of small jobs take more than their questions. No job is refused because of jobs that can
+// be deleted.
+TEST_F(StoredLimitsTest, ManySmallJobsKeepTheBound) {
+  constexpr int64_t kBound = 180'000;
+  Start({.max_store_bytes = kBound});
+  ASSERT_OK(store_->Commit([](Database& database) {
+    for (int i = 0; i < 1'000; ++i) {
+      JobRecord record;
+      record.id = std::to_string(i);
+      record.job.set_principal(kAnn.name);
+      record.job.mutable_progress()->set_points(1);
+      InsertJob(database, record);
+      JobEnd end;
+      end.numbers.bytes = BytesOfJob(record.job.spec());
+      EndJob(database, record.sequence, end);
+    }
+  }));
+  EXPECT_GT(ReadFrom(*store_, &UsedBytes), kBound);
+  EXPECT_OK(Create(kBen, Request(1)));
+  book_->KeepLimits(absl::Now());
+  EXPECT_LT(ReadFrom(*store_, &UsedBytes), kBound);
+}
+
 TEST_F(StoredLimitsTest, ThePrincipalWithTheMostBytesMakesRoom) {
   Start({.max_store_bytes = 600'000});
   const std::string oldest = Done(kAnn, 1, 300), bens = Done(kBen, 2, 300);

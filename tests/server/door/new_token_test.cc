@@ -55,6 +55,9 @@ TEST_F(NewToken, AnOpenOrMalformedFileStaysUnchanged) {
   EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),
               HasSubstr("line 1"));
   EXPECT_EQ(Contents(file_.path), "nonsense\n");
+  WriteFile(file_.path, std::string(kMaxSecurityFile - 50, '#'));  // a comment
+  EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),
+              HasSubstr("no room"));
 }
 
 // No file may grow beyond `bytes`, as on a disk that is full.

@@ -39,6 +39,14 @@ TEST_F(DataFolder, TheLockHasTheServersProcessIdWhileItIsHeld) {
   EXPECT_EQ(Contents(path_ + "/lock"), "");
 }
 
+TEST_F(DataFolder, AMovedFolderKeepsItsNumberAndACopyHasAnother) {
+  const uint64_t number = DataDirectory::Open(path_)->Number();
+  std::filesystem::rename(path_, path_ + "-moved");
+  std::filesystem::copy(path_ + "-moved", path_);
+  EXPECT_EQ(DataDirectory::Open(path_ + "-moved")->Number(), number);
+  EXPECT_NE(DataDirectory::Open(path_)->Number(), number);
+}
+
 TEST_F(DataFolder, AFileOfAnotherProgramNamedLockIsUnchanged) {
   Make(0700);
   for (const std::string text : {"the safe's combination\n", "12345678901234567890123456789012"}) {

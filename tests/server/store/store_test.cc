@@ -59,6 +59,30 @@ TEST_F(StoreTest, AJobIsThereAfterReopening) {
   EXPECT_EQ(found->question, "question of a");
 }
 
+// Labels can make many jobs of a question, and the store writes nothing else meanwhile.
+TEST_F(StoreTest, AnAnswerIsSearchedAmongTheOldestJobs) {
+  const auto store = Open();
+  ASSERT_OK(store->Commit([](Database& database) {
+    for (int i = 0; i <= kMostAnswers; ++i) {
+      JobRecord record = Record(std::to_string(i));
+      record.question = "question";
+      InsertJob(database, record);
+      EndJob(database, record.sequence, JobEnd());
+    }
+  }));
+  int asked = 0;
+  const auto find = [&](int accepted) {
+    return ReadFrom(*store, [&](Database& database) {
+      asked = 0;
+      return FindAnswer(database, "ada", "question",
+                        [&](const EnsembleJob&) { return ++asked == accepted; });
+    });
+  };
+  EXPECT_EQ(find(2)->job.DebugString(), Find(*store, "1")->job.DebugString());
+  EXPECT_FALSE(find(kMostAnswers + 1));
+  EXPECT_EQ(asked, kMostAnswers);
+}
+
 TEST_F(StoreTest, TheReaderCannotWrite) {
   const auto store = Open();
   EXPECT_FALSE(store->Read([](Database& database) { database.Execute("DELETE FROM jobs"); }).ok());
