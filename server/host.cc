@@ -22,6 +22,11 @@ uint64_t RandomBits() {
   return high << 32 | random();
 }
 
+void*& PointerOfThread() {
+  static constinit thread_local void* pointer = nullptr;
+  return pointer;
+}
+
 // ---- threads ----
 
 struct Thread::Running {

@@ -22,6 +22,9 @@ double ProcessorSeconds();
 
 uint64_t RandomBits();
 
+// A pointer of the calling thread, null when the thread starts. Async-signal-safe.
+void*& PointerOfThread();
+
 // Works as std::thread does. The constructor throws std::system_error if the machine cannot start
 // another thread.
 class Thread {

@@ -18,6 +18,7 @@
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "server/fatal_signals.h"
+#include "server/host.h"
 #include "server/status/log.h"
 
 namespace ballpiston::server {
@@ -174,8 +175,6 @@ int64_t CrashRecord::counted_deaths() const { return page_->counted_deaths; }
 
 // ---- of a thread ----
 
-constinit thread_local CrashRecord::Slot* CrashRecord::slot_of_this_thread = nullptr;
-
 // Null if all slots are taken.
 CrashRecord::Slot* CrashRecord::TakeSlot(Page& page) {
   for (Slot& slot : page.slots) {
@@ -186,7 +185,7 @@ CrashRecord::Slot* CrashRecord::TakeSlot(Page& page) {
 }
 
 CrashRecord::Entry::Entry(CrashRecord& record, const RunName& run, std::optional<size_t> point)
-    : before_(slot_of_this_thread) {
+    : before_(static_cast<Slot*>(PointerOfThread())) {
   static thread_local const SignalStack stack;
   while ((slot_ = TakeSlot(*record.page_)) == nullptr) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -194,16 +193,16 @@ CrashRecord::Entry::Entry(CrashRecord& record, const RunName& run, std::optional
   slot_->generation = run.generation;
   slot_->point = point ? static_cast<int64_t>(*point) : kNoPoint;
   slot_->run = run.run;  // last, because the process may be killed at any moment
-  slot_of_this_thread = slot_;
+  PointerOfThread() = slot_;
 }
 
 CrashRecord::Entry::~Entry() {
-  slot_of_this_thread = before_;
+  PointerOfThread() = before_;
   slot_->run = 0;
 }
 
 void CrashRecord::NoteDeath(int signal) {
-  if (slot_of_this_thread != nullptr) slot_of_this_thread->signal = signal;
+  if (auto* const slot = static_cast<Slot*>(PointerOfThread())) slot->signal = signal;
 }
 
 }  // namespace ballpiston::server

@@ -90,8 +90,6 @@ class CrashRecord {
   static void NoteDeath(int signal);
 
  private:
-  // Null when a thread starts, so the handler of a signal can read it.
-  static constinit thread_local Slot* slot_of_this_thread;
   struct Page;
   static Slot* TakeSlot(Page& page);
   // Of the previous process.

@@ -55,7 +55,8 @@ grpc::Status ServeUnary(ServiceContext& service, grpc::ServerContext& context, c
     if (rule.writes && service.store.stalled()) {
       return StoreFailure(absl::UnavailableError("store: the disk does not answer"));
     }
-    const auto part = service.quotas.calls.Take(call.caller.name, kMibOfCall);
+    const auto part =
+        service.quotas.calls.Take(call.caller.name, MibOfCall(request.ByteSizeLong()));
     if (!part.ok()) return part.status();
     service.calls.Keep(context, *part);
     absl::StatusOr<Response> answer = method(service, call, request);

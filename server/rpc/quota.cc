@@ -44,8 +44,8 @@ std::map<std::string, int64_t> Quota::ByPrincipal() const {
 }
 
 Quotas::Quotas(const Limits& limits)
-    : calls({.what = "MiB in calls in progress and unread answers (a call counts as 2, a stream of "
-                     "collisions as 48)",
+    : calls({.what = "MiB in calls in progress and unread answers (a call counts as 2, or five "
+                     "times its request; a stream of collisions as 48)",
              .reason = "TOO_MANY_CALLS",
              .of_one = {kMostMibOfCalls}}),
       streams({.what = "open streams",

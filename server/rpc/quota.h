@@ -2,6 +2,8 @@
 // principal from using the whole server. Thread-safe.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -50,7 +52,13 @@ class Quota {
 
 // The memory, in MiB, of most requests with their answers, and of a trace with its messages.
 inline constexpr int64_t kMibOfCall = 2;
-// The limit of one principal. It permits 128 calls, or 5 samplers (kMibOfSampler).
+// The memory, in MiB, of a call whose request has so many bytes. A large request is copied into a
+// specification and a record: four times its bytes were measured.
+constexpr int64_t MibOfCall(size_t request_bytes) {
+  return std::max(kMibOfCall, static_cast<int64_t>(5 * request_bytes >> 20));
+}
+// The limit of one principal. It permits 128 calls, 12 of the largest, or 5 samplers
+// (kMibOfSampler).
 inline constexpr int64_t kMostMibOfCalls = 256;
 
 // The quotas of all methods.

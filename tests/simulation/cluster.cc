@@ -4,6 +4,7 @@
 #include "server/convert/fold_record.h"
 #include "server/worker/worker.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/simulation/expectations.h"
 
 namespace ballpiston::server {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 constexpr int kWorkers = 2;
 constexpr std::chrono::seconds kLongestStart(60);
 constexpr std::chrono::minutes kLongestStop(5);
+constexpr std::chrono::milliseconds kLongestBlock(200);
 
 // A toy sample takes 0.02 s.
 const ClusterOptions kOptions = {.lease = std::chrono::seconds(10), .least_waiting = 2};
@@ -30,20 +32,28 @@ EnsembleSpec ToySpec(const storage::Question& question, size_t point) {
 
 }  // namespace
 
+ExperimentFactory ToyExperiments(Machine& machine, std::function<void()> crash) {
+  return FakeExperimentsBySeed([&machine, crash = std::move(crash)](
+                                   uint64_t seed, size_t, uint64_t block, const std::stop_token&) {
+    machine.Sleep(machine.UpTo(kLongestBlock));
+    const Question question = QuestionOf(seed);
+    const bool is_last = block + 1 == static_cast<uint64_t>(question.blocks);
+    if (question.crashes && is_last) crash();
+  });
+}
+
 SimulatedCluster::SimulatedCluster(Machine& machine, Scheduler& scheduler, FakeFiles& files,
-                                   ExperimentFactory experiments,
-                                   std::function<absl::Status()> flush)
+                                   std::function<absl::Status()> flush, bool engine_crashes)
     : machine_(machine),
       files_(files),
-      experiments_(std::move(experiments)),
+      engine_crashes_(engine_crashes),
       executor_(scheduler, kOptions, std::make_unique<FakeFiles>(files),
                 {.identity = "me",
                  .flush = std::move(flush),
                  .prepare = [] { return absl::OkStatus(); },
                  .read_lease = [this](absl::string_view& bytes) { return ReadLease(bytes); }}) {
-  files_.before = [this](const char*, const std::string&) {
-    const bool fails = !is_shutting_down_ && machine_.Chance(0.002);
-    return fails ? absl::UnavailableError("the folder does not answer") : absl::OkStatus();
+  files_.before = [this](const std::string& operation, const std::string& path) {
+    return BeforeOperation(operation, path);
   };
 }
 
@@ -51,6 +61,18 @@ SimulatedCluster::~SimulatedCluster() {
   is_shutting_down_ = true;
   for (Thread& worker : workers_) worker.join();
   files_.before = nullptr;
+  files_.files.merge(removed_reports_);  // the next life reads them
+}
+
+absl::Status SimulatedCluster::BeforeOperation(const std::string& operation,
+                                               const std::string& path) {
+  if (!is_shutting_down_ && machine_.Chance(0.002)) {
+    return absl::UnavailableError("the folder does not answer");
+  }
+  const auto file = files_.files.find(path);
+  const bool is_report = path.starts_with("done/") && file != files_.files.end();
+  if (operation == "remove" && is_report && machine_.Chance(0.2)) removed_reports_.insert(*file);
+  return absl::OkStatus();
 }
 
 void SimulatedCluster::Start() {
@@ -71,6 +93,12 @@ void SimulatedCluster::Work() {
 
 void SimulatedCluster::WorkOnce() {
   const WorkerOptions options = {.name = absl::StrCat("worker", machine_.Bits())};
+  std::pair<std::string, std::string> move_at_a_crash;
+  const auto crash = [&] {
+    if (!engine_crashes_) return;
+    files_.Move(move_at_a_crash.first, move_at_a_crash.second).IgnoreError();
+    throw Killed();
+  };
   const WorkerHost host = {
       .now = [this] { return machine_.now(); },
       .sleep =
@@ -81,8 +109,11 @@ void SimulatedCluster::WorkOnce() {
       .processor_seconds = ProcessorSeconds,
       .end = [this] { return EndOfWorker(); },
       .report = [](absl::string_view) {},
-      .lease_begins = [](const std::string&, const std::string&) {},
-      .read_lease = [this](absl::string_view& bytes) { return ReadLease(bytes); }};
+      .lease_begins =
+          [&](const std::string& from, const std::string& to) {
+            move_at_a_crash = {from, to};
+          },
+      .read_lease = [&](absl::string_view& bytes) { return ReadLease(bytes, crash); }};
   server::Work(files_, options, host).IgnoreError();  // of the folder
 }
 
@@ -96,9 +127,11 @@ EndOfWork SimulatedCluster::EndOfWorker() {
 void SimulatedCluster::Trouble() {
   if (machine_.Chance(0.2)) files_.now += absl::Hours(machine_.Below(20)) - absl::Hours(10);
   if (machine_.Chance(0.05)) files_.files.clear();
+  if (machine_.Chance(0.5)) files_.files.merge(removed_reports_);
 }
 
-absl::StatusOr<LeaseFile> SimulatedCluster::ReadLease(absl::string_view& bytes) const {
+absl::StatusOr<LeaseFile> SimulatedCluster::ReadLease(absl::string_view& bytes,
+                                                      std::function<void()> crash) const {
   const absl::StatusOr<std::string> plain = TakeCompressed(bytes, kMaxSharedFile);
   if (!plain.ok()) return plain.status();
   storage::Lease record;
@@ -106,7 +139,7 @@ absl::StatusOr<LeaseFile> SimulatedCluster::ReadLease(absl::string_view& bytes) 
   Lease lease = {.run = record.job(), .generation = record.generation()};
   lease.point = static_cast<size_t>(record.point());
   lease.spec = std::make_shared<const EnsembleSpec>(ToySpec(record.question(), lease.point));
-  lease.experiment = experiments_(*lease.spec, lease.point);
+  lease.experiment = ToyExperiments(machine_, std::move(crash))(*lease.spec, lease.point);
   lease.start = {record.first_chunk(), record.blocks(), ResultOfAccumulators(record.partial())};
   lease.end = record.end_chunk();
   return LeaseFile{record.server(), lease, record.touch_seconds()};

@@ -1,6 +1,7 @@
 // Machines elsewhere that share a folder with the server. The server's part and the loop of the
-// workers are the real ones; the folder is in memory. Workers are killed, stop for minutes, are
-// late or end early; operations of the folder fail, its clock jumps, and it is emptied.
+// workers are the real ones; the folder is in memory. Workers are killed, crash, stop for minutes,
+// are late or end early; operations of the folder fail, its clock jumps, it is emptied, and reports
+// that the server has removed are there again.
 #pragma once
 
 #include "server/cluster/folder_executor.h"
@@ -14,11 +15,15 @@
 
 namespace ballpiston::server {
 
+// Toy experiments. Their blocks take time, and a block that crashes the engine (Question) calls
+// `crash`.
+ExperimentFactory ToyExperiments(Machine& machine, std::function<void()> crash);
+
 class SimulatedCluster {
  public:
   // The folder outlives the server. `flush` is that of the server's store.
   SimulatedCluster(Machine& machine, Scheduler& scheduler, FakeFiles& files,
-                   ExperimentFactory experiments, std::function<absl::Status()> flush);
+                   std::function<absl::Status()> flush, bool engine_crashes);
   ~SimulatedCluster();
 
   void Start();
@@ -27,12 +32,15 @@ class SimulatedCluster {
   void Work();
   void WorkOnce();
   EndOfWork EndOfWorker();
-  absl::StatusOr<LeaseFile> ReadLease(absl::string_view& bytes) const;
+  absl::StatusOr<LeaseFile> ReadLease(
+      absl::string_view& bytes, std::function<void()> crash = [] {}) const;
+  absl::Status BeforeOperation(const std::string& operation, const std::string& path);
   void Trouble();
 
   Machine& machine_;
   FakeFiles& files_;
-  const ExperimentFactory experiments_;
+  const bool engine_crashes_;
+  std::remove_reference_t<decltype(FakeFiles::files)> removed_reports_;
   FolderExecutor executor_;
   bool is_shutting_down_ = false;
   std::vector<Thread> workers_;

@@ -16,6 +16,7 @@ struct Question {
   int64_t blocks = 1;
   bool has_tolerance = false;  // then the points end before their last block
   bool has_key = false;        // all its requests have the same request_id
+  bool crashes = false;        // the engine crashes in the last block of each point
 };
 v1::EnsembleSpec SpecOf(const Question& question);
 

@@ -9,7 +9,6 @@ namespace ballpiston::server {
 namespace {
 
 constexpr int kThreads = 2;
-constexpr std::chrono::milliseconds kLongestBlock(200);
 constexpr std::chrono::seconds kBetweenLimits(1);
 
 Store::Options StoreOptions() {
@@ -19,25 +18,26 @@ Store::Options StoreOptions() {
   return options;
 }
 
-ExperimentFactory SlowExperiments(Machine& machine) {
-  return FakeExperiments([&machine](size_t, uint64_t, const std::stop_token&) {
-    machine.Sleep(machine.UpTo(kLongestBlock));
-  });
-}
-
 }  // namespace
 
-Life::Life(Machine& machine, FakeFiles* folder)
+Life::Life(Machine& machine, FakeFiles* shared, const std::string& own_folder,
+           std::function<void()> crash)
     : machine_(machine),
       name_(absl::StrCat("life", machine.Bits())),
-      opener_(SlowExperiments(machine)),
+      crash_(std::move(crash)),
+      crashes_(std::make_shared<CrashRecord>(own_folder, OutOfMemoryKills())),
+      opener_(ToyExperiments(machine,
+                             [this] {
+                               if (!is_over_ && crash_ != nullptr) crash_();
+                             })),
       scheduler_(std::make_unique<Scheduler>(opener_, kThreads,
                                              SchedulerOptions{.least_seconds_elsewhere = 0})),
-      threads_(std::make_unique<ThreadExecutor>(*scheduler_, kThreads)),
-      cluster_(folder == nullptr ? nullptr
+      threads_(std::make_unique<ThreadExecutor>(*scheduler_, kThreads,
+                                                std::numeric_limits<double>::infinity(), crashes_)),
+      cluster_(shared == nullptr ? nullptr
                                  : std::make_unique<SimulatedCluster>(
-                                       machine, *scheduler_, *folder, SlowExperiments(machine),
-                                       [this] { return store_->Flush(); })) {
+                                       machine, *scheduler_, *shared,
+                                       [this] { return store_->Flush(); }, crash_ != nullptr)) {
   status_ = Start();
 }
 
@@ -45,7 +45,7 @@ absl::Status Life::Start() {
   absl::StatusOr<std::unique_ptr<Store>> store = Store::Open(kStorePath, StoreOptions());
   if (!store.ok()) return store.status();
   store_ = *std::move(store);
-  book_ = std::make_unique<JobBook>(*store_, Limits(), *scheduler_);
+  book_ = std::make_unique<JobBook>(*store_, Limits(), *scheduler_, crashes_);
   const absl::Status resumed = book_->Resume();
   if (!resumed.ok()) return resumed;
   if (cluster_ != nullptr) cluster_->Start();

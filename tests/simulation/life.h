@@ -3,6 +3,7 @@
 #pragma once
 
 #include "server/book/job_book.h"
+#include "server/compute/crash_record.h"
 #include "server/compute/scheduler.h"
 #include "server/compute/thread_executor.h"
 #include "server/periodic_thread.h"
@@ -16,9 +17,11 @@ namespace ballpiston::server {
 
 class Life {
  public:
-  // Opens the store on the FaultDisk and resumes its jobs. With a folder, leases also go to
-  // machines that share it.
-  Life(Machine& machine, FakeFiles* folder);
+  // Opens the store on the FaultDisk and resumes its jobs. With a `shared` folder, leases also go
+  // to machines that share it. `own_folder` has the record of crashes. `crash`: called in the
+  // thread in which the engine crashes; empty: the engine does not crash.
+  Life(Machine& machine, FakeFiles* shared, const std::string& own_folder,
+       std::function<void()> crash);
   ~Life();  // stops like a server after SIGTERM
 
   // Not OK: the reason why the server could not start. Then call no other function.
@@ -37,8 +40,10 @@ class Life {
 
   Machine& machine_;
   const std::string name_;
+  const std::function<void()> crash_;
   bool is_over_ = false;
   absl::Status status_;
+  const std::shared_ptr<CrashRecord> crashes_;
   std::unique_ptr<Store> store_;
   FactoryOpener opener_;
   std::unique_ptr<Scheduler> scheduler_;

@@ -78,6 +78,7 @@ struct Machine::Fiber {
   bool was_notified = false;  // by the end of the last wait
   bool is_joined = false;     // no thread refers to it any more
   Exceptions exceptions = {};
+  void* pointer = nullptr;  // PointerOfThread
 };
 
 Machine::Machine(uint64_t seed)
@@ -138,6 +139,8 @@ void Machine::GiveUp() {
 }
 
 void Machine::Yield() { Switch(); }
+
+void*& Machine::pointer_of_thread() { return running_->pointer; }
 
 void Machine::SleepUntil(Clock::time_point time) { Await(nullptr, time); }
 
@@ -242,6 +245,8 @@ double ProcessorSeconds() {
 }
 
 uint64_t RandomBits() { return current->Bits(); }
+
+void*& PointerOfThread() { return current->pointer_of_thread(); }
 
 struct Thread::Running {
   Machine::Fiber* fiber;

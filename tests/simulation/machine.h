@@ -47,6 +47,7 @@ class Machine {
   void NotifyAll(const void* what);
 
   Clock::time_point now() const { return now_; }
+  void*& pointer_of_thread();
 
   // ---- chance ----
 

@@ -1,5 +1,6 @@
 #include "tests/simulation/simulation.h"
 
+#include <csignal>
 #include <deque>
 
 #include "absl/strings/str_join.h"
@@ -25,6 +26,12 @@ constexpr size_t kStoryLines = 60;
 // trees keep a page more. One job of the largest kind takes as many.
 constexpr int64_t kBytesThatStay = 48 << 10;
 
+// What a death leaves.
+struct Left {
+  DiskFiles disk;
+  std::string computing;  // the record of crashes
+};
+
 class Simulation {
  public:
   explicit Simulation(const SimulationOptions& options)
@@ -34,7 +41,7 @@ class Simulation {
         world_{.machine = machine_,
                .expectations = expectations_,
                .habits = options.habits,
-               .life = [this] { return life_; },
+               .life = [this] { return HasDied() ? nullptr : life_; },
                .troubles = [this] { return troubles_; },
                .is_in_trouble = [this] { return is_in_trouble_; },
                .tell = [this](const std::string& line) { Tell(line); }} {}
@@ -69,7 +76,7 @@ class Simulation {
       Guard([this] { Happen(); });
     }
     Heal();
-    if (life_ == nullptr) Start();
+    Revive();
     for (Machine::Fiber* client : clients) Await(client);
     if (!finding_) Guard([this] { MakePeace(); });
     End();
@@ -123,7 +130,7 @@ class Simulation {
 
   void Happen() {
     if (life_ == nullptr && machine_.Chance(0.5)) Heal();
-    if (life_ == nullptr) return Start();
+    if (life_ == nullptr || HasDied()) return Revive();
     const uint64_t choice = machine_.Below(12);
     if (choice < 2 && options_.crashes) return Die("killed", Survival::kEverything);
     if (choice < 4 && options_.power_cuts) {
@@ -139,7 +146,9 @@ class Simulation {
 
   void Start() {
     ++troubles_;
-    auto life = std::make_shared<Life>(machine_, options_.cluster ? &folder_ : nullptr);
+    auto life = std::make_shared<Life>(
+        machine_, options_.cluster ? &shared_folder_ : nullptr, own_folder_.path(),
+        options_.engine_crashes ? [this] { Crash(); } : std::function<void()>());
     const absl::Status started = life->status();
     Tell(absl::StrCat("the server starts: ", started.ToString()), true);
     if (started.ok()) {
@@ -149,7 +158,28 @@ class Simulation {
     }
   }
 
+  bool HasDied() const { return life_ != nullptr && life_->is_over(); }
+
+  void Revive() {
+    if (HasDied()) End();
+    if (life_ == nullptr) Start();
+  }
+
+  // In a thread of the server. The dead process goes on until Revive; its disk and its clients
+  // ignore it.
+  void Crash() {
+    if (life_ == nullptr) return;  // it is starting
+    CrashRecord::NoteDeath(SIGSEGV);
+    Fall("the engine crashes", Survival::kEverything);
+  }
+
   void Die(const std::string& how, Survival survival) {
+    if (!HasDied()) Fall(how, survival);  // the engine may have crashed meanwhile
+    Revive();
+  }
+
+  // From now on the process changes nothing.
+  void Fall(const std::string& how, Survival survival) {
     ++deaths_;
     Tell(how, true);
     life_->Die();
@@ -159,13 +189,10 @@ class Simulation {
       done.refused |=
           !options_.disk_flushes && done.kind == DiskOperation::Kind::kSync && !done.folder;
     }
-    DiskFiles left =
-        AfterPowerCut(disk_->initial(), operations, operations.size(), survival, machine_.Bits());
+    left_ = Left{.disk = AfterPowerCut(disk_->initial(), operations, operations.size(), survival,
+                                       machine_.Bits()),
+                 .computing = survival == Survival::kEverything ? Contents(Computing()) : ""};
     disk_->Refuse(FaultDisk::Refusal::kWriteError, operations.size());
-    End();
-    disk_ = std::make_unique<FaultDisk>(std::move(left));
-    is_in_trouble_ = false;
-    Start();
   }
 
   // Some operations of the disk later, so mostly within a commit or a checkpoint.
@@ -180,19 +207,26 @@ class Simulation {
   void Restart() {
     Tell("the server restarts", true);
     life_->Die();
-    End();
-    Start();
+    Revive();
   }
 
   // Returns when no client is in a call of this life.
   void End() {
     if (life_ == nullptr) return;
     ++troubles_;
-    const std::shared_ptr<Life> life = std::exchange(life_, nullptr);
+    std::shared_ptr<Life> life = std::exchange(life_, nullptr);
     life->Die();
     life->book().Shutdown();
     while (life.use_count() > 1) machine_.Sleep(milliseconds(100));
+    life = nullptr;
+    if (!left_) return;
+    disk_ = std::make_unique<FaultDisk>(std::move(left_->disk));
+    WriteFile(Computing(), left_->computing);
+    left_ = std::nullopt;
+    is_in_trouble_ = false;
   }
+
+  std::string Computing() const { return own_folder_.File("computing"); }
 
   void BeginTrouble(const std::string& what) {
     Tell(what, true);
@@ -241,6 +275,7 @@ class Simulation {
     const auto until = machine_.now() + kPeace;
     do {
       machine_.Sleep(kLongestTrouble);
+      Revive();
       client.List();
     } while (!AllHaveEnded() && machine_.now() < until);
     expectations_.ExpectAllEnded();
@@ -281,7 +316,9 @@ class Simulation {
   const Machine::Clock::time_point begin_ = machine_.now();
   Expectations expectations_;
   std::unique_ptr<FaultDisk> disk_;
-  FakeFiles folder_;
+  FakeFiles shared_folder_;
+  TemporaryFolder own_folder_;
+  std::optional<Left> left_;  // until the next life
   std::shared_ptr<Life> life_;
   ClientWorld world_;
   uint64_t troubles_ = 0;
@@ -307,6 +344,7 @@ std::string TextOf(const SimulationOptions& o) {
   add(o.slow_disk, "a slow disk");
   add(o.full_disk, "a full disk");
   add(o.bad_disk, "a bad disk");
+  add(o.engine_crashes, "an engine that crashes");
   add(o.cluster, "a cluster");
   add(o.habits.cancels, "cancellations");
   add(o.habits.deletes, "deletions");
@@ -330,7 +368,7 @@ SimulationOptions Shrunk(SimulationOptions options, const Finding& finding, int 
   for (const Flag flag :
        {&SimulationOptions::crashes, &SimulationOptions::power_cuts, &SimulationOptions::restarts,
         &SimulationOptions::slow_disk, &SimulationOptions::full_disk, &SimulationOptions::bad_disk,
-        &SimulationOptions::cluster}) {
+        &SimulationOptions::engine_crashes, &SimulationOptions::cluster}) {
     try_with([flag](SimulationOptions& fewer) { fewer.*flag = false; });
   }
   using Habit = bool ClientHabits::*;

@@ -16,6 +16,7 @@ struct SimulationOptions {
   bool slow_disk = true;
   bool full_disk = true;
   bool bad_disk = true;
+  bool engine_crashes = true;
   bool cluster = true;
   bool disk_flushes = true;  // false: the disk reports flushes that it has not done
   ClientHabits habits = {};

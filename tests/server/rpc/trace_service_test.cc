@@ -126,9 +126,18 @@ TEST_F(TraceServiceTest, ATraceCountsAsAStreamUntilItsReaderGoes) {
   AwaitThat([&] { return TraceStream(server, TraceRequest(1)).Next().has_value(); });
 }
 
+// A call with a large request counts as more than a trace.
 TEST_F(TraceServiceTest, TheMemoryOfTracesIsLimited) {
   std::vector<std::unique_ptr<TraceStream>> traces;
+  v1::EvaluatePairsRequest large;  // 0.8 MB
+  large.mutable_rho()->Resize(100'000, kPaperRho);
   for (int64_t mib = 0; mib < kMostMibOfCalls; mib += kMibOfCall) {
+    if (mib == kMostMibOfCalls - kMibOfCall) {
+      grpc::ClientContext context;
+      v1::EvaluatePairsResponse response;
+      EXPECT_THAT(server().analytic().EvaluatePairs(&context, large, &response),
+                  IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CALLS"));
+    }
     traces.push_back(
         std::make_unique<TraceStream>(server(), TraceRequest(kMaxTracedEvents, "1000")));
     ASSERT_TRUE(traces.back()->Next());
