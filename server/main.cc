@@ -1,4 +1,5 @@
 // ballpistond: starts the server, waits for a signal or for idleness, stops it.
+#include <malloc.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <time.h>
@@ -132,6 +133,7 @@ std::string StoreIn(const CommandLine& line) {
 
 int Main(int argc, char** argv) {
   StartProcess();
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);  // the memory of a large request returns to the system
   if (std::getenv("GRPC_VERBOSITY") == nullptr) gpr_set_log_function(&NoteEndOfListening);
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());
