@@ -104,7 +104,7 @@ class TableWriter : public ResultWriter {
     optional.insert(kExtraColumns.begin(), kExtraColumns.end());
     optional.insert("model");
     TextTable table(Titles(), {"model", "estimate"}, optional);
-    for (v1::PointResult& point : points_) AddRows(std::exchange(point, {}), table);  // frees it
+    for (const v1::PointResult& point : points_) AddRows(point, table);
     if (!points_.empty()) table.Print(out_);
     reasons_.Print(out_);
   }
