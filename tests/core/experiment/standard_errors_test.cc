@@ -96,7 +96,7 @@ TEST(StandardErrors, OfMeanSigmaDoesNotDependOnTheSample) {
 // At this exponent all starts have sigma = +1, and one return in 90 changes the sign.
 TEST(StandardErrors, OfReturnsToASlowPistonNeedLongReturns) {
   const std::string question =
-      "first-hit rho=0.7 delta=0.0101 epsilon=1e-5 model=billiard samples=110 exponent=";
+      "first-hit rho=0.7 delta=0.0101 epsilon=1e-5 model=billiard samples=500 exponent=";
   const PointSummary summary = Answered(question + "1000");
   for (const Estimate& estimate : summary.estimates) {
     EXPECT_EQ(estimate.standard_error.has_value(), estimate.name == "kl_divergence");
