@@ -80,7 +80,7 @@ inline constexpr double kReturnTimeMeans = 8;  // upper end of the bins, in mean
 Histogram EmptyReturnTimes(double mean);
 
 // The points are at the lower edges of the bins. The errors are binomial; a point has one if
-// enough earlier and later returns are expected in the limit.
-Curve SurvivalCurve(const Histogram& return_times);
+// enough earlier and later returns are expected in the limit, and enough events of the mean time.
+Curve SurvivalCurve(const Histogram& return_times, double events_per_sample = 1);
 
 }  // namespace ballpiston

@@ -35,17 +35,17 @@ double TwoStages(const Decay& a, const Decay& b, double t) {
   return (b.left - a.left) / (a.rate - b.rate);
 }
 
-// The integral over the durations of three stages. The relative error of the series is 4e-6.
-double ThreeStages(const Decay& a, const Decay& b, const Decay& c, double t) {
-  const auto [least, most] =
-      std::minmax({a, b, c}, [](const Decay& x, const Decay& y) { return x.rate < y.rate; });
-  if ((most.rate - least.rate) * t < kClose) {
-    return t * t / 2 * std::cbrt(a.left * b.left * c.left);
+// The integral over the durations of three stages, with those of the stages a, b and a, c, which
+// callers have at hand. The middle rate is in both differences. The relative error of the series is
+// 4e-6.
+double ThreeStages(const Decay& a, const Decay& b, const Decay& c, double ab, double ac, double t) {
+  const auto [least, most] = std::minmax({a.rate, b.rate, c.rate});
+  if ((most - least) * t < kClose) return t * t / 2 * std::cbrt(a.left * b.left * c.left);
+  if ((b.rate - a.rate) * (c.rate - b.rate) >= 0) {
+    return (ab - TwoStages(b, c, t)) / (c.rate - a.rate);
   }
-  const bool b_is_between = (b.rate - a.rate) * (c.rate - b.rate) >= 0;
-  const bool a_is_between = (a.rate - b.rate) * (c.rate - a.rate) >= 0;
-  const Decay& middle = b_is_between ? b : a_is_between ? a : c;
-  return (TwoStages(least, middle, t) - TwoStages(middle, most, t)) / (most.rate - least.rate);
+  if ((a.rate - b.rate) * (c.rate - a.rate) >= 0) return (ab - ac) / (c.rate - b.rate);
+  return (ac - TwoStages(b, c, t)) / (b.rate - a.rate);
 }
 
 // phi in v = s sin(phi); pi/2 for v > s, which no jump reaches.
@@ -105,7 +105,7 @@ EnergyLaw::Start EnergyLaw::From(double epsilon) const {
   const double start = std::sqrt(2 * epsilon);
   const size_t bin = Histogram::OfBins(0, 0.5, bins_).BinOf(start * start / 2);
   const double u = std::min(start, kFastest);
-  return {u, bin, all_.generator.Gains(u), losses_.generator.Gains(u)};
+  return {u, bin, all_.generator.Gains(u), losses_.generator.Gains(u), FirstJumpsFrom(u)};
 }
 
 std::vector<double> EnergyLaw::Probabilities(const Start& start, double t) const {
@@ -113,7 +113,7 @@ std::vector<double> EnergyLaw::Probabilities(const Start& start, double t) const
   std::vector<double> law(bins_);
   law[start.bin] = Decay(JumpRate(u), t).left;
   AddOneJump(u, t, law);
-  AddTwoJumps(u, t, law);
+  AddTwoJumps(start, t, law);
   AddModes(all_, start.gains, u, t, law);
   AddModes(losses_, -start.gains_of_losses, u, t, law);
   double sum = 0;
@@ -138,20 +138,16 @@ void EnergyLaw::AddOneJump(double u, double t, std::vector<double>& law) const {
   }
 }
 
-// Integrates over the place w after the first jump, as above. The mass that jumps from w into a bin
+// The places w = s sin(phi) after the first jump, as above. The mass that jumps from w into a bin
 // has a square-root singularity at the w from which the bin's upper edge is just reached.
-void EnergyLaw::AddTwoJumps(double u, double t, std::vector<double>& law) const {
+std::vector<EnergyLaw::FirstJump> EnergyLaw::FirstJumpsFrom(double u) const {
   const double s = std::sqrt(1 - u * u);
-  const Decay start(JumpRate(u), t);
-  std::vector<Decay> ends_of_bins;
-  for (const double rate : middle_rates_) ends_of_bins.emplace_back(rate, t);
+  std::vector<FirstJump> jumps;
   const auto add = [&](double phi, double weight) {
     const double w = s * std::sin(phi);
-    const Decay between(JumpRate(w), t);
-    const double jumps = weight * kJumpKernelPrefactor * std::max(u, w);
+    jumps.push_back({JumpRate(w), weight * kJumpKernelPrefactor * std::max(u, w), {}});
     for (size_t bin = 0; bin < bins_ && Edge(bin) < std::sqrt(1 - w * w); ++bin) {
-      law[bin] += jumps * KernelMass(w, Edge(bin), Edge(bin + 1)) *
-                  ThreeStages(start, between, ends_of_bins[bin], t);
+      jumps.back().into_bins.push_back(KernelMass(w, Edge(bin), Edge(bin + 1)));
     }
   };
   std::vector<double> ends = {0, std::min(u, s), s};
@@ -160,19 +156,41 @@ void EnergyLaw::AddTwoJumps(double u, double t, std::vector<double>& law) const 
   for (size_t i = 1; i < ends.size() && ends[i] <= s; ++i) {
     ForEachGaussNodeWithRoot<4>(std::asin(ends[i - 1] / s), std::asin(ends[i] / s), add);
   }
+  return jumps;
+}
+
+void EnergyLaw::AddTwoJumps(const Start& from, double t, std::vector<double>& law) const {
+  const Decay start(JumpRate(from.u), t);
+  std::vector<Decay> ends;
+  std::vector<double> to_ends;
+  for (const double rate : middle_rates_) {
+    to_ends.push_back(TwoStages(start, ends.emplace_back(rate, t), t));
+  }
+  for (const FirstJump& jump : from.first_jumps) {
+    const Decay between(jump.rate, t);
+    const double to_between = TwoStages(start, between, t);
+    for (size_t bin = 0; bin < jump.into_bins.size(); ++bin) {
+      law[bin] += jump.weight * jump.into_bins[bin] *
+                  ThreeStages(start, between, ends[bin], to_between, to_ends[bin], t);
+    }
+  }
 }
 
 void EnergyLaw::AddModes(const Modes& modes, const Eigen::ArrayXd& gains, double u, double t,
                          std::vector<double>& law) const {
   const Decay start(JumpRate(u), t);
   std::vector<Decay> rates;
-  for (const double rate : modes.generator.rates()) rates.emplace_back(rate, t);
+  std::vector<double> to_rates;
+  for (const double rate : modes.generator.rates()) {
+    to_rates.push_back(TwoStages(start, rates.emplace_back(rate, t), t));
+  }
   for (const Node& node : modes.nodes) {
     const Decay end(node.rate, t);
+    const double to_end = TwoStages(start, end, t);
     double sum = 0;
     for (size_t k = 0; k < rates.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      sum += gains[i] * node.gains[i] * ThreeStages(start, rates[k], end, t);
+      sum += gains[i] * node.gains[i] * ThreeStages(start, rates[k], end, to_rates[k], to_end, t);
     }
     law[node.bin] += sum;
   }

@@ -40,11 +40,18 @@ class EnergyLaw {
   // Equal bins of the energy over [0, 1/2].
   EnergyLaw(const Discretisation& discretisation, int bins);
 
+  // A place after the first jump, with the masses that jump from it into each bin.
+  struct FirstJump {
+    double rate, weight;
+    std::vector<double> into_bins;
+  };
+
   // An initial energy, with the values that are the same for all times.
   struct Start {
     double u;
     size_t bin;
     Eigen::ArrayXd gains, gains_of_losses;
+    std::vector<FirstJump> first_jumps;
   };
   Start From(double epsilon) const;  // in [0, 1/2]
 
@@ -70,7 +77,8 @@ class EnergyLaw {
   Modes ModesOf(Generator generator) const;
   Node NodeBetween(const Generator& generator, size_t bin, double u, double other_u) const;
   void AddOneJump(double u, double t, std::vector<double>& law) const;
-  void AddTwoJumps(double u, double t, std::vector<double>& law) const;
+  std::vector<FirstJump> FirstJumpsFrom(double u) const;
+  void AddTwoJumps(const Start& from, double t, std::vector<double>& law) const;
   // Two jumps or more by the generator; exactly two by its losses alone.
   void AddModes(const Modes& modes, const Eigen::ArrayXd& gains, double u, double t,
                 std::vector<double>& law) const;

@@ -10,7 +10,10 @@
 //   mean over samples               the samples
 //   coefficient of variation        a twentieth of these (experiment/first_hit.cc)
 //   mean return time                the expected number of long returns, where these are rare
-//   mean sigma                      the expected samples of the rarer sign
+//   survival                        at most these
+//   mean cos alpha, mean sigma      the samples, and the expected ones of the rarer sign; fewer
+//   with
+//                                   a slow piston and a large exponent (experiment/first_hit.cc)
 //   mean free times in equilibrium  a tenth of the collisions (experiment/equilibrium.cc)
 //   relaxation of an energy         the expected number of orbits that meet; without an epsilon an
 //                                   eighth of the orbits (experiment/energy_relaxation.cc)

@@ -8,7 +8,7 @@
 namespace ballpiston::server {
 namespace {
 
-// Checking every page takes about a second a gigabyte; beyond this size only the structure that
+// Checking every page takes 1 to 5 seconds a gigabyte; beyond this size only the structure that
 // opening it reads is checked.
 constexpr int64_t kFullCheckBytes = int64_t{256} << 20;
 

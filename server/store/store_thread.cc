@@ -271,8 +271,7 @@ void Store::NoteHealth(const absl::Status& status) {
   MutexLock lock(mutex_);
   if (status.ok()) {
     ++counts_.commits;
-    const bool works = !closing_ && std::ranges::none_of(waiting_, &Write::has_waited);
-    if (!failing_ || !works) return;
+    if (!failing_ || closing_ || std::ranges::any_of(waiting_, &Write::has_waited)) return;
     failing_ = false;
     failure_.clear();
     if (!waiting_.empty()) due_ = SteadyNow();

@@ -98,9 +98,9 @@ Findings CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result
 //
 // Two models agree in an estimate if the difference is at most 5 times the statistical errors,
 // added in quadrature, plus both model errors. An estimate also agrees with the exact value beside
-// it. Of a distance between laws, the part above its noise floor is compared, which does not depend
-// on the number of samples. A model takes part if it computes at least 1,000 samples in the
-// permitted time, and if its model error is known. Each model has random numbers of its own.
+// it. Distances between laws are compared only from equal numbers of samples. A model takes part if
+// it computes at least 1,000 samples in the permitted time, and if its model error is known. Each
+// model has random numbers of its own.
 //
 // A difference counts only if it is seen again with other random numbers and four times the
 // samples. False alarms: a normal deviate exceeds 5 sigma with probability 5.7e-7, twice with

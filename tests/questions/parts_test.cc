@@ -42,8 +42,8 @@ Findings OfSummary(double value) {
 }
 
 // The disagreements of this estimate with another model's, which is 10 +- 0.1.
-Findings OfModels(const std::string& estimate) {
-  return Disagreements({ResultWith("standard_error: 0.1"), ResultWith(estimate)});
+Findings OfModels(const std::string& estimate, const std::string& more = "") {
+  return Disagreements({ResultWith("standard_error: 0.1"), ResultWith(estimate, more)});
 }
 
 Findings OfAModelWithoutKnownError() {
@@ -89,6 +89,10 @@ TEST(Checks, FindEachDefectAndNothingElse) {
       {"two models that differ", OfModels("value: 10.8 standard_error: 0.1"), kAgreementCheck},
       {"two models that differ by a model error",
        OfModels("value: 10.8 standard_error: 0.1 model_error: 0.2"), kNothing},
+      {"distances between laws from equal samples",
+       OfModels("value: 10.8 standard_error: 0.1 noise_floor: 0.1"), kAgreementCheck},
+      {"distances between laws from other samples",
+       OfModels("value: 10.8 standard_error: 0.1 noise_floor: 0.1", "samples: 2000"), kNothing},
       {"a model without known error", OfAModelWithoutKnownError(), kNothing},
       {"a model that differs from the exact value",
        Disagreements({ResultWith(error + " exact: 10.6")}), kAgreementCheck},

@@ -83,7 +83,9 @@ def by_name(
     found: dict[str, list[list[Any]]] = {}
     for i, point in enumerate(points):
         for message in getattr(point, part):
-            found.setdefault(name_of(message), [[] for _ in points])[i].append(message)
+            if (name := name_of(message)) not in found:
+                found[name] = [[] for _ in points]
+            found[name][i].append(message)
     return found
 
 

@@ -89,7 +89,8 @@ def _export(out: Path, *words: str) -> list[Path]:
 def _sample(out: Path, specification: str) -> list[Path]:
     with connect() as client:
         records = client.sample(json.loads(specification)).all()
-    write_table(out, {name: records[name] for name in records.dtype.names or ()})
+    table = {name: records[name] for name in records.dtype.names or ()}
+    write_table(out, table, compressed=False)  # random digits do not become smaller
     return [out]
 
 

@@ -11,7 +11,6 @@ from ballpiston.job import Job
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
 from ballpiston.table import Table
 from ballpiston.v1 import ensemble_pb2
-from ballpiston.watch import has_ended
 
 _OF_JOB = ("job", "labels", "state", "experiment", "seed", "engine_version")
 _TEXTS = (*_OF_JOB, "cells", "model", "name")
@@ -23,29 +22,29 @@ def estimates_table(jobs: Iterable[Job]) -> Table:
     finished. A note on standard error names each job that has not ended, and each that is left out
     because its results have expired or it was deleted meanwhile. Raises ResultsExpired, NotFound:
     every job would be left out."""
-    rows: list[dict[str, Any]] = []
+    columns: dict[str, list[Any]] = {name: [] for name in _COLUMNS}
     left_out: list[ResultsExpired | NotFound] = []
     count = 0
     for count, job in enumerate(jobs, 1):
         if not hasattr(job, "result_in"):
             raise TypeError(f"jobs has to be a list of jobs; one item is a {type(job).__name__}")
         try:
-            rows += _rows(job)
+            for row in _rows(job):
+                for name, column in columns.items():
+                    column.append(row.get(name, "" if name in _TEXTS else np.nan))
         except (ResultsExpired, NotFound) as error:
             left_out.append(error)
             why = str(error).splitlines()[0]
             print(f"ballpiston: {job.name} is left out: {why}", file=sys.stderr)
     if left_out and len(left_out) == count:
         raise left_out[-1]
-    return {
-        name: np.array([row.get(name, "" if name in _TEXTS else np.nan) for row in rows])
-        for name in _COLUMNS
-    }
+    return {name: np.array(column) for name, column in columns.items()}
 
 
 def _rows(job: Job) -> Iterator[dict[str, Any]]:
+    has_ended = job.has_ended  # asks the server, unless it is known
     result = job.result_in(ensemble_pb2.ListResultsRequest.BASIC)
-    if not has_ended(job.message.state):
+    if not has_ended:
         finished = f"{len(result)} of {job.message.progress.points} points are finished"
         print(f"ballpiston: {job.name} is still {result.state}: {finished}", file=sys.stderr)
     of_job = {

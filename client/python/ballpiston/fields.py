@@ -1,6 +1,7 @@
 """The fields of messages, as Python values and as NumPy arrays."""
 
 from collections.abc import Callable, Iterable
+from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
@@ -22,6 +23,13 @@ def value_of(message: Any, name: str) -> Any:
 def shown(read: Callable[[Any], Value], doc: str, of: str = "message") -> Value:
     """A property: what the function reads in `self.message`, or in another attribute."""
     return property(lambda self: read(getattr(self, of)), doc=doc)  # type: ignore[return-value]
+
+
+def shown_once(read: Callable[[Any], Value], doc: str, of: str = "message") -> Value:
+    """`shown`, but the function reads once for each object."""
+    once = cached_property(lambda self: read(getattr(self, of)))
+    once.__set_name__(object, f"once: {doc}")  # its key in `vars`, which no attribute has
+    return property(once.__get__, doc=doc)  # type: ignore[return-value]
 
 
 def column(messages: Iterable[Any], name: str) -> FloatArray:

@@ -195,11 +195,12 @@ class Job:
         """The points that are finished now. It does not wait. Raises ResultsExpired: the server
         keeps only the specification: `client.run(job.specification)` computes the same results
         again."""
+        self.refresh()
         return self.result_in(ensemble_pb2.ListResultsRequest.FULL)
 
     def result_in(self, view: Any) -> Result:
-        """`result` in a view of the protocol: BASIC has no histograms or curves."""
-        self.refresh()
+        """`result` of the job as last seen, in a view of the protocol: BASIC has no histograms or
+        curves."""
         self.message.answered_from_store = self.answered_from_store
         request = ensemble_pb2.ListResultsRequest(parent=self.name, page_size=_PAGE, view=view)
         points: list[Any] = []

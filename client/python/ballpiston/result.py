@@ -9,10 +9,12 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any, overload
 
+import numpy.typing as npt
+
 from ballpiston.arrays import Arrays, arrays_of, by_name, only, parameter_arrays
 from ballpiston.curve import Curve
 from ballpiston.document import document_of, read_document
-from ballpiston.fields import FloatArray, column, shown
+from ballpiston.fields import FloatArray, column, shown, shown_once
 from ballpiston.histogram import Histogram
 from ballpiston.point import Point, unknown_estimate
 from ballpiston.result_table import result_html, result_text
@@ -25,7 +27,8 @@ class Result:
     """The finished points of a job, in the order of the grid (rho outermost).
 
     A name gives an array over the points, result["mean_hit_time"], and a number one Point.
-    A value that does not exist at a point is NaN. Lengths are cells, masses are 1, the energy of a
+    A value that does not exist at a point is NaN. The arrays of `parameters` and `samples` are
+    read-only. Lengths are cells, masses are 1, the energy of a
     ball-piston pair is 1/2.
 
     Attributes:
@@ -33,22 +36,22 @@ class Result:
         messages: one message ballpiston.v1.PointResult for each point.
     """
 
-    parameters = shown(
-        parameter_arrays,
+    parameters = shown_once(
+        lambda points: {name: _fixed(a) for name, a in parameter_arrays(points).items()},
         "Arrays of rho, delta and of every other parameter that is used; `cells` as str.",
         "messages",
     )
-    samples = shown(
-        lambda points: column(points, "samples"),
+    samples = shown_once(
+        lambda points: _fixed(column(points, "samples")),
         "First hits, orbits, replicas or collisions at each point.",
         "messages",
     )
-    models = shown(
+    models = shown_once(
         lambda points: [spelled(point, "model") for point in points],
         'The model that answered at each point, such as "billiard".',
         "messages",
     )
-    remarks: list[list[str]] = shown(
+    remarks: list[list[str]] = shown_once(
         lambda points: [list(point.remarks) for point in points],
         "Sentences about each point, for instance that its run was too short.",
         "messages",
@@ -180,6 +183,12 @@ class Result:
         if name not in self._by_name:
             raise KeyError(unknown_estimate(name, self.names))
         return column(map(only, self._by_name[name]), field)
+
+
+def _fixed(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """The same array, read-only: all who ask get this one."""
+    array.flags.writeable = False
+    return array
 
 
 def load(path: str | os.PathLike[str]) -> Result:

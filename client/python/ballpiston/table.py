@@ -20,7 +20,7 @@ def frame_of(table: Any) -> Any:
     return pandas.DataFrame(table)
 
 
-def write_table(path: Path, table: Table, comment: str = "") -> None:
+def write_table(path: Path, table: Table, comment: str = "", compressed: bool = True) -> None:
     """Writes the whole file or none. A .csv file has all digits, and an empty cell for NaN. If
     there is a comment, it is the first line, after a #. Raises ModuleNotFoundError: .parquet needs
     pandas and pyarrow."""
@@ -33,16 +33,16 @@ def write_table(path: Path, table: Table, comment: str = "") -> None:
                 for row in zip(*(column.tolist() for column in table.values())):
                     writer.writerow(map(_cell, row))
         elif path.suffix == ".npz":
-            part.write_bytes(npz_of(table))
+            part.write_bytes(npz_of(table, compressed))
         else:
             frame_of(table).to_parquet(part, index=False)
 
 
-def npz_of(table: Table) -> memoryview:
+def npz_of(table: Table, compressed: bool = True) -> memoryview:
     """The bytes of an .npz file, made in memory: an archive in a file would write to it again
     after a failed write, when Python destroys the archive."""
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, **table)
+    (np.savez_compressed if compressed else np.savez)(buffer, **table)
     return buffer.getbuffer()
 
 

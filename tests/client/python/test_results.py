@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import html
 import math
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
 
 import ballpiston
+from ballpiston.arrays import by_name
 from ballpiston.point import measured_text
 
 
@@ -28,6 +31,27 @@ def test_parameters_follow_the_grid_with_rho_outermost(first_hits: ballpiston.Re
     assert list(parameters) == ["rho", "delta", "epsilon", "exponent"]
     assert parameters["delta"].tolist() == [0.1, 0.1, 0.05, 0.05]
     assert parameters["exponent"].tolist() == [1, 2, 1, 2]
+
+
+def test_a_loop_over_points_may_ask_for_everything_at_each(first_hits: ballpiston.Result) -> None:
+    for name in ("parameters", "samples", "models", "remarks"):
+        assert getattr(first_hits, name) is getattr(first_hits, name)
+    for array in (first_hits.samples, *first_hits.parameters.values()):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+
+
+def test_a_message_needs_no_walk_over_the_points(first_hits: ballpiston.Result) -> None:
+    class Points(list):  # type: ignore[type-arg]
+        walks = 0
+
+        def __iter__(self) -> Iterator[Any]:
+            self.walks += 1
+            return super().__iter__()
+
+    points = Points(first_hits.messages)
+    assert by_name(points, "estimates").keys() == set(first_hits.names)
+    assert points.walks == 1 + len(first_hits.names)
 
 
 def test_a_number_gives_one_point(first_hits: ballpiston.Result) -> None:

@@ -2,6 +2,7 @@
 #include "core/closed_form/ingoing_law.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/expected_returns.h"
+#include "core/experiment/returns.h"
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
@@ -90,6 +91,21 @@ TEST(StandardErrors, OfMeanSigmaDoesNotDependOnTheSample) {
   EXPECT_EQ(constant.value, -1);
   EXPECT_EQ(constant.standard_error, 0);
   EXPECT_EQ(constant.batches, 0u);
+}
+
+// At this exponent all starts have sigma = +1, and one return in 90 changes the sign.
+TEST(StandardErrors, OfReturnsToASlowPistonNeedLongReturns) {
+  const std::string question =
+      "first-hit rho=0.7 delta=0.0101 epsilon=1e-5 model=billiard samples=500 exponent=";
+  const PointSummary summary = Answered(question + "1000");
+  for (const Estimate& estimate : summary.estimates) {
+    EXPECT_EQ(estimate.standard_error.has_value(), estimate.name == "kl_divergence");
+  }
+  for (size_t i = 1; i < kReturnTimeBins; ++i) {
+    EXPECT_FALSE(summary.curves[0].points[i].standard_error);
+  }
+  EXPECT_TRUE(HasError("mean_sigma", question + "1"));
+  EXPECT_TRUE(HasError("mean_cos_alpha", question + "1"));
 }
 
 // A body at rest that is out of reach of the other keeps its energy, so that orbits that do not
