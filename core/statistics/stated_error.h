@@ -11,9 +11,8 @@
 //   coefficient of variation        a twentieth of these (experiment/first_hit.cc)
 //   mean return time                the expected number of long returns, where these are rare
 //   survival                        at most these
-//   mean cos alpha, mean sigma      the samples, and the expected ones of the rarer sign; fewer
-//   with
-//                                   a slow piston and a large exponent (experiment/first_hit.cc)
+//   mean cos alpha                  the samples, or fewer (experiment/first_hit.cc)
+//   mean sigma                      the expected samples of the rarer sign, or fewer (likewise)
 //   mean free times in equilibrium  a tenth of the collisions (experiment/equilibrium.cc)
 //   relaxation of an energy         the expected number of orbits that meet; without an epsilon an
 //                                   eighth of the orbits (experiment/energy_relaxation.cc)
