@@ -39,6 +39,7 @@ pkg=$(dirname "$(find "$prefix" -name ballpiston-core.pc)")
 g++ -fsyntax-only "$work/all.cc" \
   $(PKG_CONFIG_PATH=$pkg pkg-config --cflags ballpiston-core ballpiston-client)
 
+expect "ballpiston " ballpiston-web --version  # which `ballpiston web` starts
 expect result.csv ballpiston run conditional-mean-free-time --rho 0.5296 \
   --delta 0.1 --epsilon 0.1 --save "$work/result.csv"
 expect "# ensembleJobs/" head -1 "$work/result.csv"
