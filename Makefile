@@ -17,7 +17,7 @@ DOCS_PACKAGES := doxygen furo python3-breathe python3-myst-parser python3-sphinx
 NOTEBOOK_PACKAGES := python3-nbconvert python3-ipykernel
 DEB_PACKAGES := $(DOCS_PACKAGES) build-essential debhelper dh-python help2man lintian
 WEB_PACKAGES = chromium $(shell command -v npm >/dev/null || echo nodejs npm)
-PROGRAMS := ballpiston ballpistond ballpiston-worker conductivity method_comparison slow_pistons stability pages python_package
+PROGRAMS := ballpiston ballpiston-web ballpistond ballpiston-worker conductivity method_comparison slow_pistons stability pages python_package
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder

@@ -299,6 +299,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(const std::vector<std::string>& wor
   const bool passes_help_on = verb->passes_words_on && rest.size() > 1;
   if (sorted.has_help && !passes_help_on) return CommandLine{.page = ShortPage(verb)};
   CommandLine line{.verb = verb};
+  line.options.line = words;
   Settings settings;
   absl::Status status = CheckWords(*verb, sorted);
   if (status.ok()) status = AddGiven(*verb, sorted, settings);

@@ -1,20 +1,17 @@
 #include "client/command/exit_code.h"
 
-#include <string>
-
 #include "absl/strings/match.h"
 #include "client/library/error_text.h"
 
 namespace ballpiston::client {
 namespace {
 
-// Errors from gRPC's own limits, such as the size of a message, have no reason.
+// The server names a delay with a limit if a retry can help. Errors from gRPC's own limits, such as
+// the size of a message, have no reason.
 ExitCode OfLimit(const absl::Status& status) {
-  const std::string reason = ErrorReason(status);
-  if (absl::StrContains(status.message(), kTooLarge)) return ExitCode::kUsage;
-  if (reason.empty()) return ExitCode::kFailed;
-  const bool is_lasting = reason == "TOO_MANY_POINTS" || reason == "TOO_MANY_PINNED_BYTES";
-  return is_lasting ? ExitCode::kUsage : ExitCode::kUnreachable;
+  if (RetryDelay(status) > absl::ZeroDuration()) return ExitCode::kUnreachable;
+  const bool is_too_large = absl::StrContains(status.message(), kTooLarge);
+  return ErrorReason(status).empty() && !is_too_large ? ExitCode::kFailed : ExitCode::kUsage;
 }
 
 }  // namespace

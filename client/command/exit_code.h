@@ -18,7 +18,7 @@ enum class ExitCode {
 };
 
 // The exit code for a failed call. An error without its own exit code is kFailed. A server's limit
-// on a single job is kUsage; a limit on the server's total work is kUnreachable.
+// is kUnreachable if the server says when to retry (RetryInfo), else kUsage.
 ExitCode ExitCodeOf(const absl::Status& status);
 
 // Converts the exit status of a child program: the same number if it is an ExitCode, else kFailed.

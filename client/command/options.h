@@ -63,8 +63,9 @@ struct Options {
   bool all = false;  // of help: every flag
   Completion completion = Completion::kBash;
 
-  std::set<std::string> given;  // names of the flags on the command line: --rho
-  std::string connection;       // flags that choose the server: " --server ..."
+  std::vector<std::string> line;  // the words of the command line, the verb included
+  std::set<std::string> given;    // names of the flags on the command line: --rho
+  std::string connection;         // flags that choose the server: " --server ..."
 };
 
 }  // namespace ballpiston::client

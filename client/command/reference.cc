@@ -88,29 +88,26 @@ Page PageOf(const Verb& verb) {
 // The text without what follows a semicolon.
 std::string Gist(const std::string& text) { return text.substr(0, text.find(';')); }
 
-Section ShortSectionOf(const FlagGroup& group) {
-  Section section = SectionOf(group);
-  for (size_t i = 0; i < group.flags.size(); ++i) {
-    const Flag& flag = group.flags[i];
-    section.entries[i].text = Described(Gist(flag.text), flag.value, "");
-  }
-  return section;
-}
-
 Page ShortPageOf(const Verb& verb) {
   Page page = PageOf(verb);
   page.sections.resize(verb.arguments.empty() ? 0 : 1);
   std::vector<std::string> others;
   for (const FlagGroup* group : verb.groups) {
-    if (group->is_everyday) {
-      page.sections.push_back(ShortSectionOf(*group));
-    } else {
-      for (const Flag& flag : group->flags) others.push_back(LongName(flag));
+    FlagGroup everyday = {group->title, {}};
+    for (Flag flag : group->flags) {
+      if (!group->is_everyday || !flag.is_everyday) {
+        others.push_back(LongName(flag));
+        continue;
+      }
+      flag.text = Gist(flag.text);
+      everyday.flags.push_back(std::move(flag));
     }
+    if (!everyday.flags.empty()) page.sections.push_back(SectionOf(everyday));
   }
   std::erase(others, "");
   page.description = "";
-  page.examples.resize(1);
+  absl::StrAppend(&page.synopsis, "\n  ", page.examples[0]);
+  page.examples.clear();
   page.more = absl::StrCat("Also ", absl::StrJoin(others, " "), "; ", kProgram, " help --all ",
                            verb.name, " describes every flag");
   return page;
@@ -172,7 +169,7 @@ std::string PageText(const Page& page) {
     absl::StrAppend(&out, "\n", section.title, ":\n");
     for (const Remark& entry : section.entries) out += TextEntry(entry);
   }
-  out += "\nExamples:\n";
+  if (!page.examples.empty()) out += "\nExamples:\n";
   for (const std::string& example : page.examples) absl::StrAppend(&out, "  ", example, "\n");
   if (!page.more.empty()) absl::StrAppend(&out, "\n", Wrapped(page.more, 0, 0), "\n");
   return out;

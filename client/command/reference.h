@@ -10,7 +10,7 @@ namespace ballpiston::client {
 // The whole page of a verb; null gives the program's page.
 std::string TextPage(const Verb* verb);
 // At most kScreen lines: the everyday flags in a few words, and the names of the others.
-inline constexpr int kScreen = 55;
+inline constexpr int kScreen = 40;
 std::string ShortPage(const Verb* verb);
 // The page of the verbs that begin with this word, such as server; empty if no verb does.
 std::string GroupPage(const std::string& word);

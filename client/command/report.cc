@@ -7,7 +7,7 @@
 #include "client/library/error_text.h"
 #include "client/output/json.h"
 #include "client/output/new_file.h"
-#include "client/web/page_files.h"
+#include "client/output/page_files.h"
 
 namespace ballpiston::client {
 namespace {

@@ -89,6 +89,11 @@ Flag Required(std::string name, Value value, std::string text) {
           /*is_required=*/true};
 }
 
+Flag Rare(Flag flag) {
+  flag.is_everyday = false;
+  return flag;
+}
+
 // ---- flags ----
 
 const FlagGroup kCommon = {
@@ -130,12 +135,12 @@ const FlagGroup kGrid = {
      {"--cells", GridCells(),
       "shapes of the gas: N or NxM; a chain of N cells, or a lattice of N columns and M rows"},
      {"--temperature", Grid(&v1::Grid::mutable_temperature),
-      "temperatures of a gas in equilibrium, by default 1 (the Boltzmann constant is 1)"},
+      "temperatures of a gas in equilibrium; by default 1 (the Boltzmann constant is 1)"},
      {"--hot", Grid(&v1::Grid::mutable_hot), "temperatures of the hot reservoir"},
      {"--cold", Grid(&v1::Grid::mutable_cold), "temperatures of the cold reservoir"},
-     {"--points", File(To(&Options::points_file)),
-      "CSV file with a table of points; its header names the parameters, in any order; the flags "
-      "of other parameters multiply the table; - is standard input"}}};
+     Rare({"--points", File(To(&Options::points_file)),
+           "CSV file with a table of points; its header names the parameters, in any order; the "
+           "flags of other parameters multiply the table; - is standard input"})}};
 
 const FlagGroup kTarget = {
     "Target (at most one; --tolerance and --budget can be combined)",
@@ -157,25 +162,27 @@ const FlagGroup kMethod = {
      {"--model",
       OneOf<Spec::Model>("MODEL", EnumChoices<Spec::Model>(),
                          [](Options& o, Spec::Model model) { o.spec.set_model(model); }),
-      "by default auto, the cheapest model that gives the estimate"},
-     {"--estimate",
-      Text("NAME", [](Options& o, std::string name) { Target(o).set_estimate(std::move(name)); }),
-      "the estimate of --tolerance and --model auto, one of the names in docs/answers.md; the "
-      "result prints it first; the error of a wrong name lists those that the experiment permits"},
-     {"--precision",
-      OneOf<Spec::Precision>(
-          "PRECISION", EnumChoices<Spec::Precision>(),
-          [](Options& o, Spec::Precision precision) { o.spec.set_precision(precision); }),
-      "floating-point precision of the billiard; by default double"},
+      "model, by default auto; auto is the cheapest model that gives the estimate"},
+     Rare({"--estimate",
+           Text("NAME",
+                [](Options& o, std::string name) { Target(o).set_estimate(std::move(name)); }),
+           "the estimate of --tolerance and --model auto, one of the names in docs/answers.md; the "
+           "result prints it first; the error of a wrong name lists those that the experiment "
+           "permits"}),
+     Rare({"--precision",
+           OneOf<Spec::Precision>(
+               "PRECISION", EnumChoices<Spec::Precision>(),
+               [](Options& o, Spec::Precision precision) { o.spec.set_precision(precision); }),
+           "floating-point precision of the billiard; by default double"}),
      {"--verify", Switch([](Options& o, bool verify) { o.spec.set_verify(verify); }),
       "also simulate points that have a closed form; with --model auto; the exact values stand "
       "beside the simulated values"},
-     {"--spec", File(To(&Options::spec_file)),
-      "JSON file with the whole specification; - is standard input; it replaces EXPERIMENT and all "
-      "flags of grid, target and method"},
-     {"--again", Job(To(&Options::again)),
-      "use the specification of this job; for instance because its results have expired; it "
-      "replaces EXPERIMENT and all flags of grid, target and method"}}};
+     Rare({"--spec", File(To(&Options::spec_file)),
+           "JSON file with the whole specification; - is standard input; it replaces EXPERIMENT "
+           "and all flags of grid, target and method"}),
+     Rare({"--again", Job(To(&Options::again)),
+           "use the specification of this job; for instance because its results have expired; it "
+           "replaces EXPERIMENT and all flags of grid, target and method"})}};
 
 const FlagGroup kJob = {
     "Job",
@@ -200,9 +207,10 @@ const FlagGroup kFormat = {"Output",
                            {{"--format", OneOf("FORMAT", kFormats, To(&Options::format)),
                              "format on standard output; by default table"}}};
 
-const FlagGroup kSave = {
-    "File",
-    {{"--save", File(To(&Options::save)),
+const FlagGroup kFormatAndSave = {
+    kFormat.title,
+    {kFormat.flags[0],
+     {"--save", File(To(&Options::save)),
       "write the result to this file: .json, .csv or .npz; it has the specification, the seed and "
       "the versions; prints the file's path. .json has everything, .npz NumPy arrays (this needs "
       "the Python package), .csv the estimates"}}};
@@ -419,7 +427,7 @@ std::vector<Verb> AllVerbs() {
        "Ctrl-C ends the client, but not the job; the message says how to watch the job again. If "
        "the server has stored results for the same specification, it returns them.",
        {kExperiment},
-       With(kQuestion, {&kJob, &kFormat, &kSave, &kProgress, &kServer}),
+       With(kQuestion, {&kJob, &kFormatAndSave, &kProgress, &kServer}),
        {"run conditional-mean-free-time --rho 0.5296 --delta 0.1,0.2 --epsilon 0.1:0.4:4 --verify",
         "run first-hit --rho 0.5296 --delta 0.1 --epsilon 0.125 --exponent 1,2 --samples 1e5 "
         "--format csv"},
@@ -446,7 +454,7 @@ std::vector<Verb> AllVerbs() {
        "print a job's result: the points that it has finished so far",
        "",
        {kJobsOrLabels},
-       With({&kSelection, &kPoint, &kFormat, &kSave, &kServer}),
+       With({&kSelection, &kPoint, &kFormatAndSave, &kServer}),
        {"result ensembleJobs/ID", "result ID --save result.json",
         "result ID --point 17 --format json >point.json"},
        &Result},

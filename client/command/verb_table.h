@@ -20,12 +20,13 @@ struct Flag {
   std::string text;
   std::string variable = "";  // environment variable, used if the flag is not given
   bool is_required = false;
+  bool is_everyday = true;  // else the short help only names the flag
 };
 
 struct FlagGroup {
   std::string title;
   std::vector<Flag> flags;
-  bool is_everyday = true;  // else the short help only names the flags
+  bool is_everyday = true;  // else none of its flags is
 };
 
 struct Argument {

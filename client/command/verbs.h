@@ -31,6 +31,9 @@ VerbFunction ServerStart, ServerStop, ServerAddress, ServerStatus, ServerToken, 
     ServerCheck;
 VerbFunction Help, Complete;
 
+// What Web does in ballpiston-web (web/serve.cc); null elsewhere: there Web starts ballpiston-web.
+inline VerbFunction* serve_page = nullptr;
+
 // The names of the installed figures.
 std::vector<std::string> FigureNames();
 

@@ -1,27 +1,21 @@
-// ballpiston web: serves the page on this machine, and forwards JSON calls to the server.
-#include "absl/strings/str_cat.h"
-#include "client/command/connection.h"
-#include "client/web/web_server.h"
+// ballpiston web: becomes the program ballpiston-web, with the same words.
+#include <errno.h>
+#include <unistd.h>
+
+#include "absl/status/status.h"
+#include "client/command/verbs.h"
+#include "client/library/child_process.h"
 
 namespace ballpiston::client {
 VerbResult Web(const Options& options, Terminal& terminal) {
-  const auto files = ReadPageFiles();
-  if (!files.ok()) return files.status();
-  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    const auto call = [&](const JsonCall& once, const JsonReceiver& receive) {
-      return NameServer(CallWithJson(connection.client, once, receive), connection);
-    };
-    const auto announce = [&](const std::string& url) {
-      terminal.out << url << std::endl;
-      terminal.Note(
-          "Ctrl-C stops the page, but not the jobs. Keep the address secret: anyone who has it can "
-          "use the server in your name.");
-    };
-    const absl::Status served = ServePage(*files, call, static_cast<int>(options.port), announce);
-    if (served.ok()) return ExitCode::kDone;
-    return absl::InvalidArgumentError(
-        absl::StrCat("--port ", options.port, ": ", served.message()));
-  });
+  if (serve_page != nullptr) return serve_page(options, terminal);
+  std::string program = ProgramBeside("ballpiston-web");
+  std::vector<char*> arguments = {program.data()};
+  for (const std::string& word : options.line) arguments.push_back(const_cast<char*>(word.data()));
+  arguments.push_back(nullptr);
+  execv(program.c_str(), arguments.data());
+  const absl::Status why = absl::ErrnoToStatus(errno, "cannot start " + program);
+  return absl::FailedPreconditionError(why.message());
 }
 
 }  // namespace ballpiston::client

@@ -24,8 +24,8 @@
 #include <string>
 
 #include "absl/status/status.h"
+#include "client/output/page_files.h"
 #include "client/web/json_call.h"
-#include "client/web/page_files.h"
 
 namespace ballpiston::client {
 

@@ -36,7 +36,8 @@ void SetDetail(absl::Status& status, const Detail& detail) {
 }
 
 // The least seconds before a retry, for the errors that waiting cures. The store retries its writes
-// every second. A limit on jobs stays reached until jobs end.
+// every second. A limit on jobs stays reached until jobs end. Clients exit with 3 at a limit with a
+// delay, with 2 at one without.
 absl::Duration RetryDelayFor(const std::string& reason) {
   static const auto* const seconds =
       new std::map<std::string, int>{{"SHUTTING_DOWN", 1},    {"STORE_FULL", 1},

@@ -249,7 +249,7 @@ TEST_F(WebTest, AStreamEndsWhenItsReaderDisconnects) {
   EXPECT_THAT(server_.Client({"cancel", name}), ExitsWith(0));
 }
 
-TEST(WebFlags, TheErrorNamesAPortInUse) {
+TEST(WebErrors, NameAPortInUseAndAMissingProgram) {
   const TestServer server;
   const ProcessResult high = server.Client({"web", "--port", "70000"});
   EXPECT_THAT(high, ExitsWith(2));
@@ -263,6 +263,10 @@ TEST(WebFlags, TheErrorNamesAPortInUse) {
   EXPECT_THAT(taken.err, HasSubstr(absl::StrCat("--port ", port, ": the port is in use")));
   web->Signal(SIGINT);
   EXPECT_THAT(web->Wait(), ExitsWith(130));
+  fs::copy(ClientProgram(), server.folder().File("alone"));
+  const ProcessResult alone = RunProgram({.command = {server.folder().File("alone"), "web"}});
+  EXPECT_THAT(alone, ExitsWith(4));
+  EXPECT_THAT(alone.err, HasSubstr("/ballpiston-web: No such file"));
 }
 
 class ReportTest : public ::testing::Test {

@@ -66,6 +66,7 @@ g++ -std=c++20 -O2 -march=native -fPIC -shared "$work/flow.cc" "${flags[@]}" -o 
 g++ "$work/flow.so" -o "$work/native-flow"
 expect "$("$work/flow")" "$work/native-flow"
 
+expect "ballpiston " ballpiston-web --version  # which `ballpiston web` starts
 expect result.csv ballpiston run conditional-mean-free-time --rho 0.5296 \
   --delta 0.1 --epsilon 0.1 --save "$work/result.csv"
 expect "# ensembleJobs/" head -1 "$work/result.csv"

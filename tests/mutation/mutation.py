@@ -38,7 +38,7 @@ TESTS = {
     "server": ["server_test", "worker_test", "store_fault_test", "simulation_test"],
     "client": ["client_test", "interrupts_test"],
 }
-PROGRAMS = {"core": [], "server": ["ballpistond"], "client": ["ballpiston"]}
+PROGRAMS = {"core": [], "server": ["ballpistond"], "client": ["ballpiston", "ballpiston-web"]}
 LONGEST_USUAL = 1000.0  # seconds of all parts without a mutant; far more than they take
 SHORTEST_HANG = 120.0  # seconds; a part that ends earlier does not hang
 CAUGHT, MISSED, GONE, INVALID = "caught", "missed", "gone", "does not compile"

@@ -36,8 +36,6 @@ _EXIT_CODES: list[tuple[type[BaseException], int]] = [
     (MemoryError, 2),
     (TypeError, 2),
 ]
-# A retry does not help against these; against other limits of the server it does.
-_LASTING_LIMITS = ("TOO_MANY_POINTS", "TOO_MANY_PINNED_BYTES")
 
 
 def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str]) -> int:
@@ -60,7 +58,7 @@ def exit_code_of(error: BaseException) -> int:
     if isinstance(error, errors.NoPrivateServer) and error.exit_code:
         return error.exit_code
     if isinstance(error, errors.ResourceExhausted) and error.reason:
-        return 2 if error.reason in _LASTING_LIMITS else 3
+        return 3 if error.retry_delay else 2  # the server names a delay if a retry can help
     return next(code for kind, code in _EXIT_CODES if isinstance(error, kind))
 
 

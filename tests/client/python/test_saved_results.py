@@ -97,9 +97,12 @@ def test_a_full_disk_is_an_error_that_names_the_file(
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("reason,code", [("TOO_MANY_POINTS", 2), ("TOO_MANY_JOBS", 3), ("", 4)])
-def test_a_program_says_by_its_exit_code_whether_a_retry_helps(reason: str, code: int) -> None:
-    assert exit_code_of(ballpiston.ResourceExhausted("a limit", reason=reason)) == code
+@pytest.mark.parametrize("reason,delay,code", [("SIZE", 0.0, 2), ("LOAD", 9.0, 3), ("", 0.0, 4)])
+def test_a_program_says_by_its_exit_code_whether_a_retry_helps(
+    reason: str, delay: float, code: int
+) -> None:
+    limit = ballpiston.ResourceExhausted("a limit", reason=reason, retry_delay=delay)
+    assert exit_code_of(limit) == code
     not_started = ballpiston.NoPrivateServer("a store of another version")
     assert exit_code_of(not_started) == 3
     not_started.exit_code = code

@@ -1,7 +1,7 @@
 // The parts of `ballpiston web` and of the report. tests/end_to_end/web_test.cc tests the whole.
 #include "absl/strings/cord.h"
+#include "client/output/page_files.h"
 #include "client/web/connect_protocol.h"
-#include "client/web/page_files.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "tests/client/preamble.h"

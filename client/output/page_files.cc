@@ -1,4 +1,4 @@
-#include "client/web/page_files.h"
+#include "client/output/page_files.h"
 
 #include <filesystem>
 #include <fstream>
