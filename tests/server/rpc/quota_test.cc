@@ -31,6 +31,21 @@ TEST(Quota, StreamsAreAlwaysLimited) {
   EXPECT_EQ(MostStreams({.max_streams = 10 * kMostStreams}), kMostStreams);
 }
 
+TEST(Turns, SomeHaveOneAndTheOthersWait) {
+  Turns turns;
+  turns.Await(2);
+  turns.Await(2);
+  std::atomic<bool> third = false;
+  std::jthread thread([&] {
+    turns.Await(2);
+    third = true;
+  });
+  EXPECT_FALSE(third);
+  turns.End();
+  thread.join();
+  EXPECT_TRUE(third);
+}
+
 // ---- unread answers ----
 
 // Each answer has a large job, which the client's gRPC does not take before the client reads it.
