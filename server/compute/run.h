@@ -77,6 +77,7 @@ class Run {
 
   int64_t key() const { return request_.key; }
   const RunRequest& request() const { return request_; }  // without the spec
+  void SetPriority(int32_t priority) { request_.priority = priority; }
   const EnsembleSpec& spec() const { return *spec_; }
   RunJournal& journal() const { return *request_.journal; }
 

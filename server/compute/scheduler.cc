@@ -12,6 +12,13 @@
 #include "server/convert/errors.h"
 
 namespace ballpiston::server {
+namespace {
+
+HeldLeases::Owner OwnerOf(const Run& run) {
+  return {run.request().principal, run.request().priority};
+}
+
+}  // namespace
 
 Scheduler::Scheduler(PointOpener& opener, int workers, SchedulerOptions options)
     : opener_(opener), workers_(workers), options_(options), held_(options.memory_limit) {}
@@ -33,6 +40,7 @@ void Scheduler::Add(RunRequest request) {
 
 void Scheduler::SetPriority(int64_t run, int32_t priority) {
   MutexLock lock(mutex_);
+  if (const RunPointer found = FindRun(run)) found->SetPriority(priority);
   for (FairShare& shares : shares_) shares.SetPriority(run, priority);
 }
 
@@ -166,7 +174,7 @@ std::optional<Lease> Scheduler::Choose(const Capacity& capacity) {
 }
 
 Capacity Scheduler::WithBounds(const Capacity& capacity, const Run& run) const {
-  Capacity bounded = held_.WithMemory(capacity, run.key());
+  Capacity bounded = held_.WithMemory(capacity, run.key(), OwnerOf(run));
   if (!suspects_.empty()) bounded.seconds = 0;
   return bounded;
 }
@@ -180,7 +188,7 @@ std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   }
   if (lease) {
     if (lease->OpensPoints()) return lease;
-    held = &held_.Add(*std::move(lease));
+    held = &held_.Add(*std::move(lease), OwnerOf(run));
     if (capacity.share) held->lease.work = capacity.share(held->lease);
     Wake();  // other threads can take turns at it
   }

@@ -12,6 +12,7 @@
 //   4. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
 //      deaths of the process (crash_record.h): other runs pause, and executors elsewhere too. It
 //      has one lease of one chunk at a time, so it holds no memory when it pauses.
+//   5. APrincipalLeavesMemoryToTheOthers (held_leases.h).
 // Thread-safe.
 #pragma once
 
