@@ -122,14 +122,17 @@ bool Scheduler::MayTakeTurn(const Run& run, bool is_local) const {
 }
 
 // Between two turns, because the disk may be slow.
-void Scheduler::ClearIfRefuted(const RunPointer& run) {
-  std::function<bool()> clear;
+void Scheduler::EndSuspicionIfDue(const RunPointer& run) {
+  std::function<bool(bool)> end;
+  bool is_refuted = false;
   {
     MutexLock lock(mutex_);
-    if (suspects_.empty() || IsPaused(*run) || !run->IsRefuted()) return;
-    clear = run->request().suspicion->clear;
+    if (suspects_.empty() || IsPaused(*run)) return;
+    is_refuted = run->IsRefuted();
+    if (!is_refuted && !run->WasAloneForLong()) return;
+    end = run->request().suspicion->end;
   }
-  if (!clear()) return;
+  if (!end(is_refuted)) return;
   {
     MutexLock lock(mutex_);
     std::erase(suspects_, run->key());
@@ -203,12 +206,12 @@ void Scheduler::EndTurn(const Lease& lease, double seconds) {
     MutexLock lock(mutex_);
     run = FindRun(lease.run);
     run->journal().Worked(seconds);
-    run->TurnEnds();
+    run->TurnEnds(seconds);
     SharesOf(lease).TurnEnds(lease.run, seconds);
     if (!lease.OpensPoints()) held_.EndTurn(lease);
   }
   Wake();
-  ClearIfRefuted(run);
+  EndSuspicionIfDue(run);
   Conclude(run);
   run->journal().AwaitRoom();
 }
@@ -325,7 +328,7 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
   if (is_finished) FinishPoint(run, lease);
   if (lease.local) return checked;  // the executor wakes the others when its turn ends
   if (!is_finished) Wake();
-  ClearIfRefuted(run);
+  EndSuspicionIfDue(run);
   run->journal().AwaitRoom();
   return checked;
 }

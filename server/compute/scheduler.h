@@ -13,6 +13,7 @@
 //      deaths of the process (crash_record.h): other runs pause, and executors elsewhere too. It
 //      has one lease of one chunk at a time, so it holds no memory when it pauses.
 //   5. APrincipalLeavesMemoryToTheOthers (held_leases.h).
+//   6. TheOthersGoOnAfterTwoMinutes of a suspect.
 // Thread-safe.
 #pragma once
 
@@ -132,7 +133,7 @@ class Scheduler {
   bool HasTurns() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool IsPaused(const Run& run) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool MayTakeTurn(const Run& run, bool is_local) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void ClearIfRefuted(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
+  void EndSuspicionIfDue(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
   FairShare& SharesOf(const Lease& lease) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
     return shares_[lease.local];
   }
