@@ -1,6 +1,7 @@
 #include "server/compute/scheduler.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -10,6 +11,7 @@
 #include "server/compute/crash_record.h"
 #include "server/compute/guarded.h"
 #include "server/convert/errors.h"
+#include "server/host.h"
 
 namespace ballpiston::server {
 namespace {
@@ -213,7 +215,13 @@ void Scheduler::EndTurn(const Lease& lease, double seconds) {
   Wake();
   EndSuspicionIfDue(run);
   Conclude(run);
+  const bool has_results = lease.OpensPoints() || lease.stop.stop_requested();
+  if (!has_results) return;
+  const auto before = SteadyNow();
   run->journal().AwaitRoom();
+  const std::chrono::duration<double> waited = SteadyNow() - before;
+  MutexLock lock(mutex_);
+  SharesOf(lease).Used(lease.run, waited.count());
 }
 
 void Scheduler::Return(const Lease& lease, bool tried) {

@@ -1,6 +1,6 @@
 // Decides which lease an executor gets next, and merges what executors report.
 //
-// The scheduler is passive: it has no threads and no clock. Executors (lease.h) call it. A lease
+// The scheduler is passive: it has no threads and no timer. Executors (lease.h) call it. A lease
 // goes to the run whose turn it is (fair_share.h; the shares of this server's threads and those of
 // executors elsewhere are separate), or to the next run if that run has no lease for this executor
 // now. The scheduler merges chunks in order under its lock, so results depend neither on executors
@@ -80,7 +80,8 @@ class Scheduler {
   absl::Status Report(const Lease& lease, LeaseReport report);
 
   // For a local executor: a turn at the lease ends, after its last report. `seconds`: processor
-  // time of the whole turn. May wait for the disk.
+  // time of the whole turn. Waits for the disk if a point was opened or finished, which counts as
+  // time of the run: other runs with fewer results have the threads meanwhile.
   void EndTurn(const Lease& lease, double seconds);
 
   // These are for executors that are not local.
