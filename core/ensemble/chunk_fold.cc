@@ -17,7 +17,7 @@ ChunkFold::ChunkFold(const ChunkPlan& plan, PartialChunk start, uint64_t end,
 
 uint64_t ChunkFold::WindowFor(const ChunkPlan& plan, uint64_t orbits) {
   constexpr uint64_t kLongestOrbit = 16, kMost = 16 * kWindow;
-  return std::clamp(kLongestOrbit * orbits / plan.MostInABlock(), kWindow, kMost);
+  return std::min(kWindow + kLongestOrbit * orbits / plan.MostInABlock(), kMost);
 }
 
 bool ChunkFold::HasNextBlock() const {

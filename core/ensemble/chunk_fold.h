@@ -8,6 +8,7 @@
 // Not thread-safe.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -44,9 +45,12 @@ class ChunkFold {
   // The maximum number of blocks that are handed out but not merged. It bounds the memory of blocks
   // that wait for a slow one. A smaller window would leave lanes empty.
   static constexpr uint64_t kWindow = 1024;
-  // The window of a device that has so many orbits in progress. The longest orbit of a block takes
-  // about ten times as long as the mean orbit, and later blocks must fill the lanes until it ends.
+  // The window if, beside the orbits of one thread, so many are in progress: those of a device, or
+  // kOrbitsOfAThread for each further thread. The longest orbit of a block takes about ten times as
+  // long as the mean orbit, and later blocks must fill the lanes until it ends.
   static uint64_t WindowFor(const ChunkPlan& plan, uint64_t orbits);
+  static constexpr uint64_t kOrbitsOfAThread = 32;
+  void WidenTo(uint64_t window) { window_ = std::max(window_, window); }
 
   // Returns each block once; empty if no block may be handed out now.
   std::optional<Block> NextBlock();

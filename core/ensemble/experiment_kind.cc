@@ -54,8 +54,9 @@ double MemoryOf(const EnsembleSpec& spec, const PointParameters& point, int thre
   const Forecast forecast = ForecastOf(spec, point);
   const double used = std::min(static_cast<double>(threads),
                                static_cast<double>(SamplesAskedFor(spec.target, forecast)));
-  constexpr auto kWaitingResults = static_cast<double>(ChunkFold::kWindow);
-  return kOfAnAnswer + kWaitingResults * spec.experiment->memory_of_a_result +
+  const uint64_t further_orbits = (static_cast<uint64_t>(used) - 1) * ChunkFold::kOrbitsOfAThread;
+  const uint64_t waiting_results = ChunkFold::WindowFor(PlanFor(spec, point), further_orbits);
+  return kOfAnAnswer + static_cast<double>(waiting_results) * spec.experiment->memory_of_a_result +
          used * forecast.memory;
 }
 

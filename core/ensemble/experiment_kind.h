@@ -160,7 +160,7 @@ const ExperimentKind* FindExperiment(uint64_t number);
 // engines, the blocks in progress, and the results that wait to be merged. It is known before the
 // computation starts: the scheduler keeps the sum over the running points below a limit, and a
 // question beyond the machine's memory is rejected. Two things are not counted: a device's buffers,
-// and the results that wait beyond ChunkFold::kWindow in a device's larger window (WindowFor). Uses
+// and the results that wait in a device's larger window (ChunkFold::WindowFor). Uses
 // spec.model; for AUTO the billiard, unless a closed form answers. The spec must have no
 // violations.
 double MemoryOf(const EnsembleSpec& spec, const PointParameters& point, int threads);

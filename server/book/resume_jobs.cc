@@ -22,6 +22,9 @@
 namespace ballpiston::server {
 namespace {
 
+constexpr char kComputedAlone[] =
+    "; it is computed alone until its next chunk is stored, for two minutes at most";
+
 std::string Text(const std::set<size_t>& points) { return absl::StrJoin(points, " "); }
 
 bool IsOfOtherEngine(const JobRecord& record) {
@@ -161,21 +164,20 @@ std::optional<Suspicion> ActiveJobs::SuspicionOf(const JobRecord& record) {
   const std::set<size_t> points = crashes_.LastPoints(RunOf(record));
   Log(Severity::kWarning,
       absl::StrCat("the server died ", deaths, deaths == 1 ? " time" : " times",
-                   " while it computed this job",
-                   is_suspect ? "; it is computed alone until its next chunk is stored" : ""),
+                   " while it computed this job", is_suspect ? kComputedAlone : ""),
       {{"job", record.job.name()},
        {"principal", record.job.principal()},
        {"points", Text(points)}});
   if (!is_suspect) return std::nullopt;
-  const auto clear = [&store = store_, &crashes = crashes_, run = RunOf(record),
-                      name = record.job.name()] {
+  const auto end = [&store = store_, &crashes = crashes_, run = RunOf(record),
+                    name = record.job.name()](bool is_refuted) {
     if (!store.Flush().ok()) return false;
-    crashes.Clear(run);
+    is_refuted ? crashes.Clear(run) : crashes.KeepOneDeath(run);
     Log(Severity::kInfo, "this job was computed alone without a crash; other jobs continue",
         {{"job", name}});
     return true;
   };
-  return Suspicion{.points = points, .clear = clear};
+  return Suspicion{.points = points, .end = end};
 }
 
 }  // namespace ballpiston::server

@@ -164,6 +164,13 @@ void CrashRecord::Clear(const RunName& run) {
   std::ranges::replace(page_->deaths, run, Page::Death(), &Page::Death::run);
 }
 
+void CrashRecord::KeepOneDeath(const RunName& run) {
+  MutexLock lock(mutex_);
+  for (Page::Death& entry : page_->deaths) {
+    if (entry.run == run) entry.deaths = 1;
+  }
+}
+
 void CrashRecord::ClearAllBut(const std::set<RunName>& runs) {
   MutexLock lock(mutex_);
   std::ranges::replace_if(

@@ -81,7 +81,9 @@ class CrashRecord {
   std::set<size_t> LastPoints(const RunName& run) const;
   // The run's deaths count no more.
   void Clear(const RunName& run);
-  // The same for all other runs than these.
+  // One death of the run counts from now on. No effect if none counts.
+  void KeepOneDeath(const RunName& run);
+  // The deaths of all other runs than these count no more.
   void ClearAllBut(const std::set<RunName>& runs);
 
   int64_t counted_deaths() const;  // of all processes with this record

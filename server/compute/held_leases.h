@@ -2,14 +2,18 @@
 //
 // The leases of local executors take no more memory together than the limit, unless one does alone.
 // The first run that finds too little memory waits: leases of other runs that begin later leave it
-// as much as it needs. Not thread-safe: the scheduler's lock guards it.
+// as much as it needs. A quarter of the limit is for leases whose principal has no other one of the
+// same or a higher priority, and for further turns of a principal's only lease: otherwise the long
+// points of one principal could take all memory. Not thread-safe: the scheduler's lock guards it.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "server/compute/lease.h"
@@ -18,8 +22,12 @@ namespace ballpiston::server {
 
 class HeldLeases {
  public:
+  // A run's principal and priority.
+  using Owner = std::pair<std::string, int32_t>;
+
   struct Held {
     Lease lease;
+    Owner owner;
     int turns = 0;       // of a local executor
     int most_turns = 0;  // at a time until now
   };
@@ -28,10 +36,10 @@ class HeldLeases {
   explicit HeldLeases(double memory_limit) : limit_(memory_limit) {}
 
   // The capacity of a local executor, with the memory that a new lease of the run can take.
-  Capacity WithMemory(Capacity capacity, int64_t run) const;
+  Capacity WithMemory(Capacity capacity, int64_t run, const Owner& owner) const;
 
   // Gives the lease, which has chunks, its number.
-  Held& Add(Lease lease);
+  Held& Add(Lease lease, Owner owner);
 
   // The lease whose point comes first, among the run's local leases that have a turn, and for whose
   // turn there is memory. Null if there is none.
@@ -74,12 +82,15 @@ class HeldLeases {
   static Key KeyOf(const Lease& lease) { return {lease.run, !lease.local, lease.number}; }
 
   Leases::iterator Drop(Leases::iterator held);
-  double FreeMemory(bool is_later) const;
+  // Whether the principal has more local leases of this priority or a higher one.
+  bool HasMoreThan(int leases, const Owner& owner) const;
+  double FreeMemory(bool is_later, bool has_other_leases) const;
   bool IsLater(const Lease& lease) const;
   void AddMemory(const Lease& lease, double bytes);
 
   const double limit_;
   Leases held_;
+  std::map<Owner, int> local_leases_;
   double memory_ = 0;  // bytes that they take
   std::optional<Waiting> waiting_;
   int64_t last_number_ = 0;

@@ -85,9 +85,10 @@ std::optional<std::pair<uint64_t, OpenPoint::Attempt>> OpenPoint::NextChunk(
   for (const auto& [chunk, attempt] : returned_) {
     if (fits(chunk, attempt)) return std::pair(chunk, attempt);
   }
-  // Beyond the expected end the next chunk or stage alone, because it may be the last.
-  const uint64_t stage = std::max<uint64_t>(plan.groups(), 1);
-  const uint64_t next_end = (fold_.state().chunk / stage + 1) * stage;
+  // Beyond the expected end at most an eighth of what is merged, rounded up to whole chunks or
+  // stages, because each may be the last.
+  const auto merged = static_cast<double>(plan.SamplesBefore(fold_.state().chunk));
+  const uint64_t next_end = plan.ChunksFor(1.125 * merged - static_cast<double>(plan.warm_up()));
   const uint64_t expected = std::max(experiment_->expected_chunks(), next_end);
   const uint64_t end = std::isinf(capacity.seconds) ? chunks() : std::min(expected, chunks());
   if (next_chunk_ >= end || !fits(next_chunk_, Attempt())) return std::nullopt;

@@ -32,12 +32,14 @@ struct Shortfall {
 };
 
 // The run was being computed when the process died, twice. It is computed alone until this process
-// has computed a chunk of each of these points, and the chunks are stored. Only these points are
-// computed until then. Without points: until any chunk is stored.
+// has computed a chunk of each of these points, and the chunks are stored, which refutes the
+// suspicion. Without points: until any chunk is stored. Only these points are computed until then.
+// Long samples would take days: after two minutes alone the suspicion ends too.
 struct Suspicion {
   std::set<size_t> points = {};  // that were being computed at the last death
-  // Stores what was reported, which may take long, and ends the suspicion. False: not now.
-  std::function<bool()> clear;
+  // Stores what was reported, which may take long, and ends the suspicion. If it is not refuted,
+  // the next death is the second again. False: not now.
+  std::function<bool(bool is_refuted)> end;
 };
 
 struct RunRequest {
@@ -77,6 +79,7 @@ class Run {
 
   int64_t key() const { return request_.key; }
   const RunRequest& request() const { return request_; }  // without the spec
+  void SetPriority(int32_t priority) { request_.priority = priority; }
   const EnsembleSpec& spec() const { return *spec_; }
   RunJournal& journal() const { return *request_.journal; }
 
@@ -95,7 +98,10 @@ class Run {
 
   // The leases of local executors, and their turns in progress: a run ends when there are none.
   void TurnBegins() { ++turns_; }
-  void TurnEnds() { --turns_; }
+  // `seconds`: of processor time.
+  void TurnEnds(double seconds = 0) {
+    seconds_with_turns_ += seconds / static_cast<double>(turns_--);
+  }
   bool HasTurns() const { return turns_ > 0; }
 
   // A lease to open points reports for each of its points that it is open, or finished (with
@@ -129,9 +135,10 @@ class Run {
   // The point is finished, or has a chunk more that this process has computed. It is not being
   // opened any more.
   void NoteProgress(size_t point);
-  // Whether the suspicion is to be cleared: the run has progressed, and no point of the suspicion
-  // is left.
+  // Whether the run has progressed, and no point of the suspicion is left.
   bool IsRefuted() const;
+  // Whether this process has computed the run, a suspect that was alone, for two minutes.
+  bool WasAloneForLong() const { return seconds_with_turns_ >= kLongAlone; }
   void EndSuspicion() { request_.suspicion.reset(); }
 
   // Ends the run: it gives no more leases and requests the stop of those in progress. The first
@@ -148,6 +155,8 @@ class Run {
   bool Begin() { return !std::exchange(began_, true); }
 
  private:
+  static constexpr double kLongAlone = 120;
+
   std::optional<Lease> NextOpening();
   bool NoteAwaited(const OpenPoint& point, const Capacity& capacity);
   // `begun`: blocks of the lease that have begun but are not merged.
@@ -175,6 +184,7 @@ class Run {
   size_t next_point_ = 0;       // in grid order
   std::set<size_t> opening_;    // points that are being opened
   size_t turns_ = 0;
+  double seconds_with_turns_ = 0;  // processor time of a turn, divided by the turns beside it
   double awaited_memory_ = 0;
   bool hungry_elsewhere_ = false;  // an executor that is not local found nothing
   double sampled_points_ = 0;      // opened ones

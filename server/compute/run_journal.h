@@ -68,7 +68,7 @@ class RunJournal {
   // OK: every point is finished. CANCELLED: the run was stopped. Otherwise the reason of failure.
   virtual void Ended(const absl::Status& outcome) = 0;
 
-  // Called between two turns. Returns when the journal has room for more reports.
+  // Called after a turn with results. Returns when the journal has room for more reports.
   virtual void AwaitRoom() = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "server/compute/scheduler.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -10,8 +11,16 @@
 #include "server/compute/crash_record.h"
 #include "server/compute/guarded.h"
 #include "server/convert/errors.h"
+#include "server/host.h"
 
 namespace ballpiston::server {
+namespace {
+
+HeldLeases::Owner OwnerOf(const Run& run) {
+  return {run.request().principal, run.request().priority};
+}
+
+}  // namespace
 
 Scheduler::Scheduler(PointOpener& opener, int workers, SchedulerOptions options)
     : opener_(opener), workers_(workers), options_(options), held_(options.memory_limit) {}
@@ -33,6 +42,7 @@ void Scheduler::Add(RunRequest request) {
 
 void Scheduler::SetPriority(int64_t run, int32_t priority) {
   MutexLock lock(mutex_);
+  if (const RunPointer found = FindRun(run)) found->SetPriority(priority);
   for (FairShare& shares : shares_) shares.SetPriority(run, priority);
 }
 
@@ -114,14 +124,17 @@ bool Scheduler::MayTakeTurn(const Run& run, bool is_local) const {
 }
 
 // Between two turns, because the disk may be slow.
-void Scheduler::ClearIfRefuted(const RunPointer& run) {
-  std::function<bool()> clear;
+void Scheduler::EndSuspicionIfDue(const RunPointer& run) {
+  std::function<bool(bool)> end;
+  bool is_refuted = false;
   {
     MutexLock lock(mutex_);
-    if (suspects_.empty() || IsPaused(*run) || !run->IsRefuted()) return;
-    clear = run->request().suspicion->clear;
+    if (suspects_.empty() || IsPaused(*run)) return;
+    is_refuted = run->IsRefuted();
+    if (!is_refuted && !run->WasAloneForLong()) return;
+    end = run->request().suspicion->end;
   }
-  if (!clear()) return;
+  if (!end(is_refuted)) return;
   {
     MutexLock lock(mutex_);
     std::erase(suspects_, run->key());
@@ -166,7 +179,7 @@ std::optional<Lease> Scheduler::Choose(const Capacity& capacity) {
 }
 
 Capacity Scheduler::WithBounds(const Capacity& capacity, const Run& run) const {
-  Capacity bounded = held_.WithMemory(capacity, run.key());
+  Capacity bounded = held_.WithMemory(capacity, run.key(), OwnerOf(run));
   if (!suspects_.empty()) bounded.seconds = 0;
   return bounded;
 }
@@ -180,7 +193,7 @@ std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   }
   if (lease) {
     if (lease->OpensPoints()) return lease;
-    held = &held_.Add(*std::move(lease));
+    held = &held_.Add(*std::move(lease), OwnerOf(run));
     if (capacity.share) held->lease.work = capacity.share(held->lease);
     Wake();  // other threads can take turns at it
   }
@@ -195,14 +208,20 @@ void Scheduler::EndTurn(const Lease& lease, double seconds) {
     MutexLock lock(mutex_);
     run = FindRun(lease.run);
     run->journal().Worked(seconds);
-    run->TurnEnds();
+    run->TurnEnds(seconds);
     SharesOf(lease).TurnEnds(lease.run, seconds);
     if (!lease.OpensPoints()) held_.EndTurn(lease);
   }
   Wake();
-  ClearIfRefuted(run);
+  EndSuspicionIfDue(run);
   Conclude(run);
+  const bool has_results = lease.OpensPoints() || lease.stop.stop_requested();
+  if (!has_results) return;
+  const auto before = SteadyNow();
   run->journal().AwaitRoom();
+  const std::chrono::duration<double> waited = SteadyNow() - before;
+  MutexLock lock(mutex_);
+  SharesOf(lease).Used(lease.run, waited.count());
 }
 
 void Scheduler::Return(const Lease& lease, bool tried) {
@@ -317,7 +336,7 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
   if (is_finished) FinishPoint(run, lease);
   if (lease.local) return checked;  // the executor wakes the others when its turn ends
   if (!is_finished) Wake();
-  ClearIfRefuted(run);
+  EndSuspicionIfDue(run);
   run->journal().AwaitRoom();
   return checked;
 }

@@ -1,6 +1,6 @@
 // Decides which lease an executor gets next, and merges what executors report.
 //
-// The scheduler is passive: it has no threads and no clock. Executors (lease.h) call it. A lease
+// The scheduler is passive: it has no threads and no timer. Executors (lease.h) call it. A lease
 // goes to the run whose turn it is (fair_share.h; the shares of this server's threads and those of
 // executors elsewhere are separate), or to the next run if that run has no lease for this executor
 // now. The scheduler merges chunks in order under its lock, so results depend neither on executors
@@ -12,6 +12,8 @@
 //   4. SuspectsAreComputedAloneOneAfterTheOther. A suspect is a run that was being computed at two
 //      deaths of the process (crash_record.h): other runs pause, and executors elsewhere too. It
 //      has one lease of one chunk at a time, so it holds no memory when it pauses.
+//   5. APrincipalLeavesMemoryToTheOthers (held_leases.h).
+//   6. TheOthersGoOnAfterTwoMinutes of a suspect.
 // Thread-safe.
 #pragma once
 
@@ -78,7 +80,8 @@ class Scheduler {
   absl::Status Report(const Lease& lease, LeaseReport report);
 
   // For a local executor: a turn at the lease ends, after its last report. `seconds`: processor
-  // time of the whole turn. May wait for the disk.
+  // time of the whole turn. Waits for the disk if a point was opened or finished, which counts as
+  // time of the run: other runs with fewer results have the threads meanwhile.
   void EndTurn(const Lease& lease, double seconds);
 
   // These are for executors that are not local.
@@ -131,7 +134,7 @@ class Scheduler {
   bool HasTurns() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool IsPaused(const Run& run) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool MayTakeTurn(const Run& run, bool is_local) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void ClearIfRefuted(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
+  void EndSuspicionIfDue(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
   FairShare& SharesOf(const Lease& lease) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
     return shares_[lease.local];
   }

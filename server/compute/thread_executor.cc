@@ -25,8 +25,7 @@ class ThreadExecutor::SharedLease : public SharedWork {
   SharedLease(ThreadExecutor& executor, Lease lease)
       : executor_(executor),
         lease_(std::move(lease)),
-        fold_(lease_.experiment->plan(), lease_.start, lease_.end, lease_.groups,
-              WindowFor(executor.device_)) {}
+        fold_(lease_.experiment->plan(), lease_.start, lease_.end, lease_.groups) {}
 
   bool IsStopped() const { return lease_.stop.stop_requested(); }
 
@@ -39,9 +38,10 @@ class ThreadExecutor::SharedLease : public SharedWork {
   // One turn, in the session that has rested longest, or in a new one.
   void Advance() {
     std::unique_ptr<Session> session = TakeSession();
-    if (!session->Advance()) return;
+    const bool has_more = session->Advance();
     MutexLock lock(mutex_);
-    resting_.push_back(std::move(session));
+    if (has_more) resting_.push_back(std::move(session));
+    if (!has_more) --sessions_;
   }
 
  private:
@@ -83,14 +83,20 @@ class ThreadExecutor::SharedLease : public SharedWork {
     std::unique_ptr<EngineRun> blocks_;
   };
 
-  uint64_t WindowFor(const OrbitDevice* device) const {
-    if (device == nullptr) return ChunkFold::kWindow;
-    return ChunkFold::WindowFor(lease_.experiment->plan(), device->orbits());
+  // Room for the blocks that the sessions have in progress (LeaseMemory).
+  uint64_t Window() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
+    const OrbitDevice* const device = executor_.device_;
+    const uint64_t further = (sessions_ - 1) * ChunkFold::kOrbitsOfAThread;
+    return ChunkFold::WindowFor(lease_.experiment->plan(), device ? device->orbits() : further);
   }
 
   std::unique_ptr<Session> TakeSession() {
     MutexLock lock(mutex_);
-    if (resting_.empty()) return std::make_unique<Session>(*this);
+    if (resting_.empty()) {
+      ++sessions_;
+      fold_.WidenTo(Window());
+      return std::make_unique<Session>(*this);
+    }
     std::unique_ptr<Session> session = std::move(resting_.front());
     resting_.pop_front();
     return session;
@@ -135,6 +141,7 @@ class ThreadExecutor::SharedLease : public SharedWork {
   mutable Mutex mutex_;
   ChunkFold fold_ ABSL_GUARDED_BY(mutex_);
   std::deque<std::unique_ptr<Session>> resting_ ABSL_GUARDED_BY(mutex_);
+  uint64_t sessions_ ABSL_GUARDED_BY(mutex_) = 0;  // also those that rest
 };
 
 ThreadExecutor::ThreadExecutor(Scheduler& scheduler, int threads, double seconds,

@@ -43,6 +43,18 @@ std::map<std::string, int64_t> Quota::ByPrincipal() const {
   return principals_;
 }
 
+void Turns::Await(int most) {
+  MutexLock lock(mutex_);
+  const int64_t own = asked_++;
+  while (own >= ended_ + most) ended_one_.Wait(mutex_);
+}
+
+void Turns::End() {
+  MutexLock lock(mutex_);
+  ++ended_;
+  ended_one_.NotifyAll();
+}
+
 Quotas::Quotas(const Limits& limits)
     : calls({.what = "MiB in calls in progress and unread answers (a call counts as 2, or five "
                      "times its request; a stream of collisions as 48)",

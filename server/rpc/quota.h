@@ -50,6 +50,19 @@ class Quota {
   std::map<std::string, int64_t> principals_ ABSL_GUARDED_BY(mutex_);
 };
 
+// Lets so many threads compute at a time; the others wait, first come, first served.
+class Turns {
+ public:
+  void Await(int most);
+  void End();
+
+ private:
+  Mutex mutex_;
+  Condition ended_one_;
+  int64_t asked_ ABSL_GUARDED_BY(mutex_) = 0;
+  int64_t ended_ ABSL_GUARDED_BY(mutex_) = 0;
+};
+
 // The memory, in MiB, of most requests with their answers, and of a trace with its messages.
 inline constexpr int64_t kMibOfCall = 2;
 // The memory, in MiB, of a call whose request has so many bytes. A large request is copied into a
@@ -71,6 +84,8 @@ struct Quotas {
   Quota calls;
   // Watches and traces. Each has a thread.
   Quota streams;
+  // Of traces and samplers, which compute beside the threads for jobs.
+  Turns traces;
 };
 
 }  // namespace ballpiston::server

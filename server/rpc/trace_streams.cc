@@ -1,6 +1,9 @@
 // TraceOrbit: the start and the events of one orbit. SampleCollisions: the collisions of a point's
 // samples. A message is computed when the reader has taken the previous one. The request bounds the
 // cost of a trace (convert/trace.h).
+#include <algorithm>
+
+#include "absl/cleanup/cleanup.h"
 #include "server/convert/collision_messages.h"
 #include "server/convert/trace.h"
 #include "server/rpc/methods.h"
@@ -17,7 +20,12 @@ absl::Status SendAll(ServiceContext& service, Stream& stream, const Request& req
   absl::StatusOr<Messages> messages = Messages::Create(request);
   if (!messages.ok()) return messages.status();
   Response message;
-  while (messages->FillNext(message)) {
+  const auto fill_next = [&] {
+    service.quotas.traces.Await(std::max(service.threads.workers() / 4, 1));
+    const absl::Cleanup end = [&] { service.quotas.traces.End(); };
+    return messages->FillNext(message);
+  };
+  while (fill_next()) {
     if (const absl::Status proceed = stream.Proceed(); !proceed.ok()) return proceed;
     const bool is_empty = message.ByteSizeLong() == 0;
     if (!is_empty && !writer.Write(message)) return absl::CancelledError("the client is gone");

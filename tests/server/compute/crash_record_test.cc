@@ -67,6 +67,8 @@ TEST_F(CrashRecordTest, TwoDeathsWithDifferentRunsMakeASuspectOfTheCommonOne) {
   EXPECT_EQ(record->Deaths(kFirst), 1);
   EXPECT_EQ(record->Deaths(kSecond), kDeathsOfASuspect);
   EXPECT_EQ(record->Deaths(kThird), 1);
+  record->KeepOneDeath(kSecond);
+  EXPECT_EQ(record->Deaths(kSecond), 1);
 }
 
 TEST_F(CrashRecordTest, AKillFromOutsideKeepsThePointsOfTheLastDeath) {

@@ -25,8 +25,15 @@ class MemoryLimitTest : public SchedulerTest {
   static EnsembleSpec SpecOfBytes(int64_t bytes) {
     return FakeSpec(2, 3000, static_cast<uint64_t>(bytes));
   }
-  // A run whose key is the number of its bytes.
-  JournalPointer AddRun(int64_t bytes) { return Add(bytes, SpecOfBytes(bytes)); }
+  // A run whose key is the number of its bytes. By default its principal has no other.
+  JournalPointer AddRun(int64_t bytes, const std::string& principal = "", int32_t priority = 0) {
+    auto journal = std::make_shared<RecordingJournal>();
+    RunRequest request = RunOf(bytes, SpecOfBytes(bytes), journal);
+    request.principal = principal.empty() ? std::to_string(bytes) : principal;
+    request.priority = priority;
+    scheduler_.Add(std::move(request));
+    return journal;
+  }
 
   // The next turn that does not open a point.
   std::optional<Lease> BeginChunks() {
@@ -103,6 +110,26 @@ TEST_F(MemoryLimitTest, ALargePointGetsItsTurn) {
   local_.End(*lease, kAllBlocks);
   local_.TakeAllTurns();
   for (const auto& journal : journals) EXPECT_EQ(journal->ends, 1);
+}
+
+// Three points of a principal would fit.
+TEST_F(MemoryLimitTest, APrincipalLeavesMemoryToTheOthers) {
+  std::vector<Lease> leases;
+  const auto begin_all = [&] {
+    std::vector<int64_t> runs;
+    while (const auto lease = BeginChunks()) {
+      leases.push_back(*lease);
+      runs.push_back(lease->run);
+    }
+    return runs;
+  };
+  for (const int64_t bytes : {30, 31, 32}) AddRun(bytes, "ann");
+  EXPECT_EQ(begin_all().size(), 2u);
+  AddRun(12, "ann", 1);
+  EXPECT_THAT(begin_all(), ElementsAre(12));
+  AddRun(10, "bob");
+  EXPECT_THAT(begin_all(), ElementsAre(10, 10));  // two threads
+  for (const Lease& lease : leases) local_.End(lease, 0);
 }
 
 // Points of 520 MB, of which some 500 MB stay while they wait for executors elsewhere.

@@ -190,6 +190,20 @@ TEST(OpenPoint, BeyondTheExpectedEndChunksComeOneByOne) {
   }
 }
 
+// Of more than 64 chunks of one sample.
+TEST(OpenPoint, FarBeyondTheExpectedEndAnEighthIsLeased) {
+  OpenPoint point(PointExperiment::Create({.experiment = &kEquilibrium,
+                                           .grid = {{kRho, {0.53}}, {kDelta, {1e-5}}},
+                                           .target = {.tolerance = 0.1},
+                                           .model = Model::kBilliard},
+                                          0));
+  ASSERT_LT(point.experiment()->expected_chunks(), 2048u);
+  FoldState state = {.chunk = 2048, .complete = point.experiment()->EmptyResult()};
+  state.complete.samples = 2048;
+  point.fold().Resume(std::move(state));
+  EXPECT_EQ(Next(point, 1e12), Chunks(2048, 2304));
+}
+
 // ---- samples that continue each other ----
 
 std::shared_ptr<const PointExperiment> SteadyExperiment() {

@@ -8,14 +8,14 @@ namespace {
 class SuspectsTest : public SchedulerTest {
  protected:
   Suspicion Suspected(int64_t key, std::set<size_t> points = {}) {
-    return {.points = std::move(points), .clear = [this, key] {
-              if (disk_works_) cleared_.push_back(key);
+    return {.points = std::move(points), .end = [this, key](bool is_refuted) {
+              if (disk_works_) (is_refuted ? cleared_ : undecided_).push_back(key);
               return disk_works_;
             }};
   }
 
   bool disk_works_ = true;
-  std::vector<int64_t> cleared_;
+  std::vector<int64_t> cleared_, undecided_;
 };
 
 // The first chunk of a point has 32 blocks.
@@ -62,6 +62,20 @@ TEST_F(SuspectsTest, ARunStaysASuspectWhileTheDiskFails) {
   EXPECT_THAT(Turns(4, 32), ElementsAre(2, 2, 2, 2));
   disk_works_ = true;
   EXPECT_THAT(Turns(1, 1), ElementsAre(2));
+  EXPECT_THAT(Turns(1, 0), ElementsAre(1));
+}
+
+TEST_F(SuspectsTest, TheOthersGoOnAfterTwoMinutes) {
+  Add(1, SixChunks(2));
+  Add(2, SixChunks(2), Suspected(2));
+  EXPECT_THAT(Turns(1, 1), ElementsAre(2));  // opens a point
+  const auto turn = local_.Begin(), beside_it = local_.Begin();
+  local_.End(*turn, 1, 120);  // a minute
+  local_.End(*beside_it, 1, 59);
+  EXPECT_THAT(undecided_, ElementsAre());
+  local_.End(*local_.Begin(), 1, 2);
+  EXPECT_THAT(undecided_, ElementsAre(2));
+  EXPECT_THAT(cleared_, ElementsAre());
   EXPECT_THAT(Turns(1, 0), ElementsAre(1));
 }
 

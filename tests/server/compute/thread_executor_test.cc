@@ -1,5 +1,7 @@
 #include "server/compute/thread_executor.h"
 
+#include <latch>
+
 #include "core/gpu/device_orbits.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/gpu/host_flights.h"
@@ -56,6 +58,22 @@ BlockResult ResultOf(const EnsembleSpec& spec, OrbitDevice* device, int workers 
   EXPECT_OK(journal->AwaitEnd());
   scheduler.Shutdown();
   return journal->finished.at(0);
+}
+
+// While one thread computes a slow block, the others must find blocks for all their lanes.
+TEST(ThreadExecutor, TheWindowGrowsWithTheThreads) {
+  constexpr int kBeyondTheWindow = ChunkFold::kWindow + 100;
+  std::latch begun(kBeyondTheWindow);
+  FactoryOpener opener(FakeExperiments([&](size_t, uint64_t block, std::stop_token) {
+    if (block < kBeyondTheWindow) begun.count_down();
+    if (block == 0) begun.wait();
+  }));
+  Scheduler scheduler(opener, 2);
+  ThreadExecutor threads(scheduler, 2);
+  const auto journal = std::make_shared<RecordingJournal>();
+  scheduler.Add(RunOf(1, FakeSpec(1, 3000), journal));
+  threads.Start();
+  EXPECT_OK(journal->AwaitEnd());
 }
 
 // Otherwise blocks of long orbits would be dropped more often than others. False alarms: 6e-5.

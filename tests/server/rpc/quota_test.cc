@@ -31,6 +31,26 @@ TEST(Quota, StreamsAreAlwaysLimited) {
   EXPECT_EQ(MostStreams({.max_streams = 10 * kMostStreams}), kMostStreams);
 }
 
+TEST(Turns, NoMoreThanTheseComputeAtATime) {
+  Turns turns;
+  std::atomic<int> computing = 0, most = 0;
+  {
+    std::vector<std::jthread> threads(8);
+    for (std::jthread& thread : threads) {
+      thread = std::jthread([&] {
+        for (int turn = 0; turn < 100; ++turn) {
+          turns.Await(2);
+          most = std::max<int>(most, ++computing);
+          std::this_thread::yield();
+          --computing;
+          turns.End();
+        }
+      });
+    }
+  }
+  EXPECT_LE(most, 2);
+}
+
 // ---- unread answers ----
 
 // Each answer has a large job, which the client's gRPC does not take before the client reads it.
