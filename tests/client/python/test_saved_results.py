@@ -147,7 +147,8 @@ def test_a_full_disk_or_closed_output_is_an_error_and_a_closed_pipe_is_none(
     )
     shell = f'"$0" -c "$1" {out}; exit ${{PIPESTATUS[0]}}'
     command = ["bash", "-c", shell, sys.executable, program]
-    printer = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT, check=False)
+    buffered = os.environ | {"PYTHONUNBUFFERED": ""}
+    printer = subprocess.run(command, capture_output=True, text=True, env=buffered, timeout=LIMIT)
     assert (printer.returncode, bool(printer.stderr)) == (code, bool(why))
     assert why in printer.stderr
 
