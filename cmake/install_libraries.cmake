@@ -37,7 +37,9 @@ function(install_library target component)
 endfunction()
 
 # The linker may take the program's copy of an inline function: it has to have the same bits.
-target_compile_options(ballpiston_core INTERFACE $<INSTALL_INTERFACE:-ffp-contract=off>)
+# nvcc does not know the option.
+target_compile_options(ballpiston_core INTERFACE
+  $<INSTALL_INTERFACE:$<$<COMPILE_LANGUAGE:C,CXX>:-ffp-contract=off>>)
 install_library(ballpiston_core core)
 install_headers(${PROJECT_SOURCE_DIR}/core core core *.h)
 set(components core)

@@ -1,5 +1,7 @@
 #include "client/command/command_line.h"
 
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
 #include <google/protobuf/stubs/logging.h>
 
 #include <algorithm>
@@ -235,12 +237,15 @@ std::string FlagNamed(absl::string_view field) {
 }
 
 // "points.csv, row 3 below the header" for grid.delta[2], and "points.csv, column delta" for
-// grid.delta, unless the command line has the flag of that list.
+// grid.delta, unless a flag or the config file has set that list.
 std::optional<std::string> PlaceInPoints(absl::string_view field, const Options& options) {
-  const bool has_flag = options.given.contains(FlagNamed(field));
-  if (options.points_file.empty() || has_flag || !absl::ConsumePrefix(&field, "spec.grid.")) {
+  if (options.points_file.empty() || !absl::ConsumePrefix(&field, "spec.grid.")) {
     return std::nullopt;
   }
+  const v1::Grid& grid = options.spec.grid();
+  const std::string name(field.substr(0, field.find('[')));
+  const auto* list = v1::Grid::descriptor()->FindFieldByName(name);
+  if (list == nullptr || grid.GetReflection()->FieldSize(grid, list) > 0) return std::nullopt;
   const std::string path = options.points_file == "-" ? "standard input" : options.points_file;
   size_t row = 0;
   const bool has_row =

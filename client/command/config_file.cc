@@ -49,6 +49,19 @@ absl::Status CheckKey(const std::string& section, const std::string& key) {
                                                  DidYouMean(key, keys)));
 }
 
+// Whether a quote in the text is still open at its end.
+bool EndsInQuotes(absl::string_view text) {
+  char quote = '\0';  // the open one
+  for (const char c : text) {
+    if (c == quote) {
+      quote = '\0';
+    } else if (quote == '\0' && (c == '"' || c == '\'')) {
+      quote = c;
+    }
+  }
+  return quote != '\0';
+}
+
 // CLI11's reader makes a list of two adjacent lines of a key, and cuts a value at # also in quotes.
 absl::Status CheckLines(const std::string& path) {
   std::ifstream file(path);
@@ -56,16 +69,17 @@ absl::Status CheckLines(const std::string& path) {
   std::string section, line;
   for (int number = 1; std::getline(file, line); ++number) {
     absl::StripAsciiWhitespace(&line);
+    if (absl::StartsWith(line, ";")) continue;  // a comment, as a line that begins with #
     if (absl::StartsWith(line, "[")) section = line;
     const size_t equals = line.find('='), hash = line.find('#');
     if (equals == line.npos || hash < equals) continue;
     const std::string key(absl::StripAsciiWhitespace(line.substr(0, equals)));
-    const auto end = line.begin() + static_cast<ptrdiff_t>(std::min(hash, line.size()));
-    const bool is_cut = hash != line.npos && std::count(line.begin(), end, '"') % 2 == 1;
+    const bool is_cut = hash != line.npos && EndsInQuotes(line.substr(0, hash));
     if (keys.insert(section + key).second && !is_cut) continue;
     return absl::InvalidArgumentError(absl::StrCat(
         path, ":", number, ": ", Quoted(key),
-        is_cut ? " has a value with #, which begins a comment" : " is given more than once"));
+        is_cut ? " has # inside quotes, where it begins a comment; permitted: values without #"
+               : " is given more than once"));
   }
   return absl::OkStatus();
 }

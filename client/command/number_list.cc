@@ -119,9 +119,11 @@ absl::StatusOr<double> ParseNumber(absl::string_view text) {
   double value = 0;
   const std::errc error = ReadNumber(text, value);
   if (error == std::errc()) return value;
-  return Bad(text, error == std::errc::result_out_of_range
-                       ? "is beyond double precision; permitted: 5e-324 to 1.8e308 in size, or 0"
-                       : "is not a decimal number such as 0.1 or 1e-3");
+  return Bad(
+      text,
+      error == std::errc::result_out_of_range
+          ? "is beyond double precision; permitted: 0, or an absolute value from 5e-324 to 1.79e308"
+          : "is not a decimal number such as 0.1 or 1e-3");
 }
 
 absl::StatusOr<int64_t> ParseCount(absl::string_view text) {

@@ -105,7 +105,7 @@ class Client {
   // Follows the job to its end (job_watch.h), and returns the ended job, without its grid.
   // CANCELLED if `stop` was requested (the job continues), UNAVAILABLE if the watch gave up
   // (RESOURCE_EXHAUSTED if the server was busy), else the server's error. A stop ends the watch at
-  // once, or after a revival that is running.
+  // once; if `revival` is running, after it returns.
   absl::StatusOr<v1::EnsembleJob> Watch(const std::string& name, const WatchCallbacks& callbacks,
                                         const WatchOptions& options = {},
                                         std::stop_token stop = {}) const;
@@ -113,8 +113,8 @@ class Client {
   // Any call of the API; the type of `request`, a request message, decides its method. Every call
   // of this class uses it. If the request has an empty field for an idempotency key, adds one, so
   // that a retry returns the original job. Reads each answer into `answer` and calls `on_answer`;
-  // if it returns false, the call ends with the status OK. CANCELLED if `stop` was requested: at
-  // once, or after the delay that the server asked for and the revival.
+  // if it returns false, the call ends with the status OK. CANCELLED if `stop` was requested. The
+  // call ends at once, or after a delay that the server asked for, or after `revival` returns.
   absl::Status Call(const google::protobuf::Message& request, google::protobuf::Message& answer,
                     const std::function<bool()>& on_answer, absl::Duration timeout,
                     const std::stop_token& stop = {}) const;

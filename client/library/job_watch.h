@@ -4,8 +4,8 @@
 // does this), with RESOURCE_EXHAUSTED and a reason (the server has too many streams), or without a
 // terminal state. The watch then pauses and reconnects with the last resume token that it received.
 // The pauses double from `initial_backoff` to `max_backoff`, and are at least as long as the
-// server's error says. The watch gives up `give_up_after` after the first broken stream without a
-// message. Every other error ends the watch.
+// server's error says. The watch gives up if no message arrives within `give_up_after` of the
+// moment at which the stream broke. Every other error ends the watch.
 //
 // Properties, each with a test of its name:
 //   1. PassesTheLastResumeTokenOn.     2. ShowsTheTerminalStateOnce.

@@ -168,8 +168,11 @@ absl::StatusOr<std::string> StartServer(const ServerProgram& program, absl::Dura
     if (server && (server->pid != 0 || exit_status)) address = server->address;
     return !address.empty() || (exit_status && !server);
   });
-  // A long-lived program keeps no zombie of a server that ends.
-  if (!exit_status) std::thread([pid] { WaitForChild(*pid).IgnoreError(); }).detach();
+  // A long-lived program keeps no zombie of a server that ends, unless it can start no thread.
+  try {
+    if (!exit_status) std::thread([pid] { WaitForChild(*pid).IgnoreError(); }).detach();
+  } catch (const std::system_error&) {
+  }
   if (!address.empty()) return address;
   return Failure(program, log_start, exit_status);
 }

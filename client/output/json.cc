@@ -3,24 +3,29 @@
 #include <google/protobuf/struct.pb.h>
 #include <google/protobuf/util/json_util.h>
 
-#include <algorithm>
+#include <optional>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
 #include "client/library/quoted.h"
 
 namespace ballpiston::client {
 namespace {
 
-// The parser drops a null from a list, and merges a list in a list with it. Both would move the
-// values behind it to other points.
-bool HasListThatMoves(const google::protobuf::Value& value) {
-  const auto& fields = value.struct_value().fields();
-  const auto& items = value.list_value().values();
-  return std::ranges::any_of(fields, [](const auto& f) { return HasListThatMoves(f.second); }) ||
-         std::ranges::any_of(items, [](const google::protobuf::Value& item) {
-           return item.has_null_value() || item.has_list_value() || HasListThatMoves(item);
-         });
+// The path, such as grid.rho, of a list that contains null or a list. The parser drops a null from
+// a list, and merges a list in a list with it. Both would move the values behind it to other
+// points.
+std::optional<std::string> ListThatMoves(const google::protobuf::Value& value) {
+  for (const auto& [key, field] : value.struct_value().fields()) {
+    const auto inner = ListThatMoves(field);
+    if (inner) return absl::StrCat(key, inner->empty() ? "" : ".", *inner);
+  }
+  for (const google::protobuf::Value& item : value.list_value().values()) {
+    if (item.has_null_value() || item.has_list_value()) return "";
+    if (auto inner = ListThatMoves(item)) return inner;
+  }
+  return std::nullopt;
 }
 
 // The parser's message contains the wrong value in full, even if it is very long. Control
@@ -55,8 +60,9 @@ absl::Status ReadJson(const std::string& json, google::protobuf::Message& messag
   if (repeated != std::string::npos) {
     return ParserError(read.message().substr(repeated).ToString());
   }
-  if (HasListThatMoves(keys)) {
-    return absl::InvalidArgumentError("a list contains null or a list; permitted: values");
+  if (const auto list = ListThatMoves(keys)) {
+    return ParserError(
+        absl::StrCat(*list, ": its list contains null or a list; permitted: numbers or texts"));
   }
   const auto status = google::protobuf::util::JsonStringToMessage(json, &message);
   return status.ok() ? absl::OkStatus() : ParserError(std::string(status.message()));

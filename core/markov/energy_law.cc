@@ -35,9 +35,9 @@ double TwoStages(const Decay& a, const Decay& b, double t) {
   return (b.left - a.left) / (a.rate - b.rate);
 }
 
-// The integral over the durations of three stages, with those of the stages a, b and a, c, which
-// callers have at hand. The middle rate is in both differences. The relative error of the series is
-// 4e-6.
+// The integral over the durations of three stages. `ab` and `ac` are TwoStages(a, b, t) and
+// TwoStages(a, c, t), which the callers have computed. The middle rate occurs in both terms of the
+// difference. The relative error of the series is 4e-6.
 double ThreeStages(const Decay& a, const Decay& b, const Decay& c, double ab, double ac, double t) {
   const auto [least, most] = std::minmax({a.rate, b.rate, c.rate});
   if ((most - least) * t < kClose) return t * t / 2 * std::cbrt(a.left * b.left * c.left);

@@ -10,7 +10,8 @@
 //   mean over samples               the samples
 //   coefficient of variation        a twentieth of these (experiment/first_hit.cc)
 //   mean return time                the expected number of long returns, where these are rare
-//   survival                        at most these
+//   survival                        the expected earlier or later returns, at most
+//                                   those of the mean return time
 //   mean cos alpha                  the samples, or fewer (experiment/first_hit.cc)
 //   mean sigma                      the expected samples of the rarer sign, or fewer (likewise)
 //   mean free times in equilibrium  a tenth of the collisions (experiment/equilibrium.cc)

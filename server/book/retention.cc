@@ -21,7 +21,8 @@
 namespace ballpiston::server {
 namespace {
 
-// Of a commit, which other writes wait for: each row is written anew, with its grid.
+// The size of a commit is bounded, because other writes wait for it. Each removed job's row is
+// rewritten with its grid.
 constexpr int kMostAtOnce = 256;
 constexpr int64_t kMostBytesAtOnce = 8 << 20;
 constexpr absl::Duration kSoonToExpire = absl::Hours(7 * 24);
@@ -92,7 +93,7 @@ void JobBook::KeepLimits(absl::Time now) {
     removed = EnforceRetention(now);
     all += removed.value_or(0);
   } while (removed.value_or(0) > 0 && store_.AwaitSwept());
-  if (all > 0) LogInfo(absl::StrCat("results expired or expired jobs were deleted: ", all));
+  if (all > 0) LogInfo(absl::StrCat("jobs whose results expired or that were deleted: ", all));
   const absl::Status kept = removed.status();
   const bool is_new = std::exchange(limits_failure_, kept) != kept;
   if (is_new && !kept.ok() && !store_.failing()) {

@@ -61,7 +61,9 @@ absl::Status Append(const NamedFile& file, const std::string& line) {
   const bool unended = !text->empty() && text->back() != '\n';
   const std::string added = absl::StrCat(unended ? "\n" : "", line, "\n");
   if (text->size() + added.size() > kMaxSecurityFile) {
-    return Unusable(file, "has no room for one more token: remove old ones");
+    return Unusable(file, absl::StrCat("would have ", text->size() + added.size(),
+                                       " bytes with this token; permitted: up to ",
+                                       kMaxSecurityFile, "; remove old tokens"));
   }
   const absl::Status written = WriteAllOrNothing(file, descriptor, added);
   // Flushes the folder too, so that the entry of a printed token survives a power cut.

@@ -7,8 +7,9 @@
 //   $XDG_STATE_HOME/ballpiston/tokens/MACHINE/127.0.0.1:50051    (~/.local/state if it is not set)
 //
 // MACHINE is the machine's name (hostname): several machines may share the user's home folder, and
-// a client must not send a token to the same address of another machine. It tells containers of one
-// machine apart, which the boot's identity does not. After a change of the name restart the server.
+// a client must not send a token to the same address of another machine. The name distinguishes
+// containers of one machine; the boot's identity does not. Restart the server after the name has
+// changed.
 #pragma once
 
 #include <string>

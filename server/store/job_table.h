@@ -50,7 +50,8 @@ std::optional<JobRecord> FindJobOfCancellation(Database& database, const std::st
                                                const std::string& request_id);
 
 // The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question) and for
-// which `accepts` returns true, given the job without its grid. Asks for the kMostAnswers oldest.
+// which `accepts` returns true, given the job without its grid. Looks only at the kMostAnswers
+// oldest jobs.
 inline constexpr int kMostAnswers = 1'000;
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
                                     const std::string& question,

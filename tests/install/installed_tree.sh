@@ -64,7 +64,9 @@ read -ra flags < <(PKG_CONFIG_PATH=$pkg pkg-config --cflags --libs ballpiston-co
 g++ -std=c++20 "$work/flow.cc" "${flags[@]}" -o "$work/flow"
 g++ -std=c++20 -O2 -march=native -fPIC -shared "$work/flow.cc" "${flags[@]}" -o "$work/flow.so"
 g++ "$work/flow.so" -o "$work/native-flow"
-expect "$("$work/flow")" "$work/native-flow"
+bits=$("$work/flow")
+[[ -n $bits ]]
+expect "$bits" "$work/native-flow"
 
 expect "ballpiston " ballpiston-web --version  # which `ballpiston web` starts
 expect result.csv ballpiston run conditional-mean-free-time --rho 0.5296 \

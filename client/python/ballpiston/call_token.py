@@ -13,6 +13,7 @@ from pathlib import Path
 
 from ballpiston.channel_security import ChannelSecurity, token_of
 from ballpiston.server_address import is_loopback
+from ballpiston.settings import home_folder
 
 
 class Token:
@@ -39,7 +40,7 @@ def _own_token(address: str) -> str:
     server makes another token at each start."""
     state = os.environ.get("XDG_STATE_HOME", "")
     try:
-        root = Path(state) if state.startswith("/") else Path.home() / ".local" / "state"
+        root = Path(state) if state.startswith("/") else home_folder() / ".local" / "state"
         return (root / "ballpiston" / "tokens" / socket.gethostname() / address).read_text().strip()
     except (OSError, RuntimeError):  # RuntimeError: no home folder
         return ""

@@ -8,6 +8,7 @@ OUT ends with .csv, .npz or .parquet. The command line starts this program after
 file and the Python modules that the file needs.
 """
 
+import errno
 import json
 import os
 import re
@@ -44,13 +45,27 @@ def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str
         # Until here SIGTERM ends Python in silence, and SIGINT would print a traceback.
         signal.signal(signal.SIGTERM, signal.default_int_handler)
         for path in main(arguments):
-            if sys.stdout is not None:  # None: it was closed at the start
-                sys.stdout.buffer.write(os.fsencode(path) + b"\n")  # in no encoding that lacks it
+            _print_name(path)
+    except BrokenPipeError:  # the reader has ended
+        return 0
     except tuple(kind for kind, _ in _EXIT_CODES) as error:
         if not isinstance(error, KeyboardInterrupt):
             print(f"ballpiston: {_with_flags(error)}", file=sys.stderr)
         return exit_code_of(error)
     return 0
+
+
+def _print_name(path: Path) -> None:
+    """As bytes, because the encoding of standard output may lack a character."""
+    if sys.stdout is None:  # it was closed at the start
+        raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+    try:
+        sys.stdout.buffer.write(os.fsencode(path) + b"\n")
+        sys.stdout.buffer.flush()
+    except OSError:
+        # Else Python flushes it again at its end, and exits with 120.
+        sys.stdout = None  # type: ignore[assignment]
+        raise
 
 
 def exit_code_of(error: BaseException) -> int:

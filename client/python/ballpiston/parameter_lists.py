@@ -33,7 +33,7 @@ INT64 = (-(2**63), 2**63 - 1)
 UINT64 = (0, 2**64 - 1)
 
 _MOST = 100_000  # values of a list
-_NO_LISTS = (bytes, bytearray, Mapping)  # iterable, but not over numbers of a list
+_NO_LISTS = (bytes, bytearray, Mapping)  # iterable, but not lists of numbers
 _NUMBER_CHARACTERS = frozenset("0123456789+-.eE")
 
 
@@ -123,8 +123,8 @@ def _parsed_number(name: str, text: str) -> float:
     is_below = number == 0 and not set(text.lower().split("e")[0]).isdisjoint("123456789")
     if is_below or math.isinf(number):
         raise ValueError(
-            f"{name}: {text!r} is beyond double precision; permitted: 5e-324 to 1.8e308 in size, "
-            "or 0"
+            f"{name}: {text!r} is beyond double precision; permitted: 0, or an absolute value from "
+            "5e-324 to 1.79e308"
         )
     return number
 
@@ -195,8 +195,11 @@ def add_points(points: Points, grid: Any) -> None:
             raise TypeError(f"points has the column {name}, and {name} is given: give one of them")
         of_column = f"points, column {name}"
         if name == "cells":
-            if any(":" in str(value) for value in values):
-                raise ValueError(f"{of_column} has a range; a row has one shape")
+            for value in values:
+                if ":" in str(value):
+                    raise ValueError(
+                        f"{of_column} has the range {value!r}; permitted: one shape a row"
+                    )
             grid.cells.extend(shape_list(of_column, values))
         else:
             getattr(grid, name).extend(number_list(of_column, values))

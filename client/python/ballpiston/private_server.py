@@ -33,7 +33,7 @@ class PrivateServer:
                 [self.program, "server", "address"],
                 stdin=subprocess.DEVNULL,
                 capture_output=True,
-                encoding="utf-8",  # gRPC's, whatever the locale's is
+                encoding="utf-8",  # gRPC's addresses are UTF-8 in every locale
                 errors="replace",
                 timeout=_START_TIME,
             )

@@ -28,8 +28,8 @@ class Result:
 
     A name gives an array over the points, result["mean_hit_time"], and a number one Point.
     A value that does not exist at a point is NaN. The arrays of `parameters` and `samples` are
-    read-only. Lengths are cells, masses are 1, the energy of a
-    ball-piston pair is 1/2.
+    read-only. All callers get the same `parameters`, `models` and `remarks`: copy them before you
+    change them. Lengths are cells, masses are 1, the energy of a ball-piston pair is 1/2.
 
     Attributes:
         job: the message ballpiston.v1.EnsembleJob, as the job was when the result was fetched.
@@ -186,7 +186,7 @@ class Result:
 
 
 def _fixed(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """The same array, read-only: all who ask get this one."""
+    """Makes the array read-only, because all callers get the same one."""
     array.flags.writeable = False
     return array
 

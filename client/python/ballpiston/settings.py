@@ -2,6 +2,7 @@
 file of the command line, ~/.config/ballpiston/config.toml."""
 
 import os
+import pwd
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -44,6 +45,15 @@ def address_and_security(given: Mapping[str, Any]) -> tuple[str, ChannelSecurity
     return address, ChannelSecurity(**settings)
 
 
+def home_folder() -> Path:
+    """HOME if it is absolute, else the user's entry. Raises RuntimeError: there is no entry."""
+    home = os.environ.get("HOME", "")
+    try:
+        return Path(home if home.startswith("/") else pwd.getpwuid(os.getuid()).pw_dir)
+    except KeyError:
+        raise RuntimeError("no home folder") from None
+
+
 def _environment() -> dict[str, str]:
     values = {name: os.environ.get(variable, "") for name, variable, _ in _SETTINGS}
     return {name: value for name, value in values.items() if value}
@@ -65,7 +75,7 @@ def _config_path() -> Path | None:
         return Path(named)
     folder = os.environ.get("XDG_CONFIG_HOME", "")
     try:
-        root = Path(folder) if folder.startswith("/") else Path.home() / ".config"
+        root = Path(folder) if folder.startswith("/") else home_folder() / ".config"
         path = root / "ballpiston" / "config.toml"
         return path if path.exists() else None
     except (OSError, RuntimeError):  # a folder of another user, or no home folder

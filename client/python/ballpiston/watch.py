@@ -2,10 +2,12 @@
 waits or in an event loop.
 
 If the stream breaks, the watch attaches again with the last resume token that it saw, after pauses
-that double from 0.1 s to 5 s, or as long as the server's error says, until two minutes after the
-first broken stream without a message. A stream is broken by UNAVAILABLE, by CANCELLED without a
-reason, as from a server that stops, by RESOURCE_EXHAUSTED with a reason, as from a server that is
-busy, and by an end without a terminal state. Every other error ends the watch.
+that double from 0.1 s to 5 s, or as long as the server's error says. The watch gives up if no
+message arrives within two minutes of the moment at which the stream broke.
+
+A stream is broken by UNAVAILABLE, by CANCELLED without a reason, as from a server that stops, by
+RESOURCE_EXHAUSTED with a reason, as from a server that is busy, and by an end without a terminal
+state. Every other error ends the watch.
 """
 
 import asyncio

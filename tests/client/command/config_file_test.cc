@@ -13,7 +13,7 @@ class ConfigFileTest : public ::testing::Test {
   const EmptyHome home_;
 };
 
-TEST_F(ConfigFileTest, ARelativeHomeIsNotUsed) {
+TEST_F(ConfigFileTest, RelativeHomeIsReplacedByTheUsersEntry) {
   const std::string home = std::filesystem::relative(home_.File(""));
   std::filesystem::create_directories(home + "/.config/ballpiston");
   WriteFile(home + "/.config/ballpiston/config.toml", "");

@@ -86,9 +86,12 @@ TEST(SpecFile, ARepeatedKeyIsRefused) {
 
 // The JSON parser would drop a null, and merge the lists.
 TEST(SpecFile, AListWithNullOrAListIsRefused) {
-  for (const char* list : {"[0.53, null, 0.6]", "[[0.53], [0.54]]", "null, \"cells\": [null]"}) {
+  for (const auto& [list, name] : {std::pair("[0.53, null, 0.6]", "grid.rho"),
+                                   {"[[0.53], [0.54]]", "grid.rho"},
+                                   {"null, \"cells\": [null]", "grid.cells"}}) {
     EXPECT_THAT(ParseSpec("s.json", absl::StrCat(R"({"grid": {"rho": )", list, "}}")),
-                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("null or a list")));
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         HasSubstr(absl::StrCat(name, ": its list contains null or a list"))));
   }
 }
 

@@ -187,7 +187,7 @@ TEST_F(JobWatch, TheTimeToGiveUpStartsAgainWithEveryMessage) {
 }
 
 // As if this process had been stopped during the first stream.
-TEST_F(JobWatch, ASilenceBeforeTheStreamBreaksDoesNotCount) {
+TEST_F(JobWatch, TheTimeToGiveUpBeginsWhenTheStreamBreaks) {
   Start({Unavailable({SnapshotMessage(1, "t")}), Succeeded()});
   options_.give_up_after = absl::Milliseconds(500);
   after_snapshot_ = [] { std::this_thread::sleep_for(std::chrono::milliseconds(600)); };

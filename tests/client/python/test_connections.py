@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pwd
 import socket
 import subprocess
 from collections.abc import Iterator
@@ -21,7 +22,7 @@ from ballpiston.connection_hint import connection_hint
 from ballpiston.error_details import Details, details_of, error_of
 from ballpiston.private_server import find_private_server
 from ballpiston.server_address import grpc_target, literal_address
-from ballpiston.settings import address_and_security
+from ballpiston.settings import address_and_security, home_folder
 
 
 def private(folder: Path, name: str, text: str, mode: int = 0o600) -> str:
@@ -172,16 +173,26 @@ def test_a_wrong_setting_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         ballpiston.connect()
 
 
-@pytest.mark.parametrize("method,error", [("home", RuntimeError), ("exists", PermissionError)])
-def test_a_home_folder_that_cannot_be_read_has_no_settings(
-    method: str, error: type[Exception], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("home", ["", "relative"])
+def test_a_relative_home_is_replaced_by_the_users_entry(
+    home: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: Path) -> None:
+    monkeypatch.setenv("HOME", home)
+    assert home_folder() == Path(pwd.getpwuid(os.getuid()).pw_dir)
+
+
+@pytest.mark.parametrize(
+    "function,error", [("pwd.getpwuid", KeyError), ("pathlib.Path.exists", PermissionError)]
+)
+def test_a_home_folder_that_cannot_be_read_has_no_settings(
+    function: str, error: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
         raise error
 
-    for variable in ("XDG_CONFIG_HOME", "XDG_STATE_HOME"):
+    for variable in ("HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME"):
         monkeypatch.delenv(variable)
-    monkeypatch.setattr(Path, method, fail)
+    monkeypatch.setattr(function, fail)
     assert address_and_security({"address": "host:1"}) == ("host:1", ChannelSecurity())
     assert Token(ChannelSecurity(), "127.0.0.1:1").metadata() == []
 

@@ -360,8 +360,9 @@ def test_a_figure_without_its_name_or_folder_is_an_error(
         (["temperature-profile", "--cells", "4,2x2"], "cells: 2x2 is a lattice"),
         (["full-counting", "--cells", "4x2"], "cells: 4x2 is a lattice"),
         (["full-counting", "--hot", "1", "--cold", "1"], "hot and cold have to differ"),
-        (["section", "--bins", "1"], "bins is 1; permitted: 2 or more"),
-        (["kernel", "--orbits", "1", "--bins", "1e15"], "Unable to allocate"),
+        (["section", "--bins", "1"], "bins is 1; permitted: 2 to 300"),
+        (["section", "--bins", "301"], "bins is 301; permitted: 2 to 300"),
+        (["kernel", "--bins", "1e15"], "bins is 1000000000000000; permitted: 1 to 10000"),
     ],
 )
 def test_what_a_figure_cannot_draw_is_refused_before_it_is_measured(

@@ -54,7 +54,7 @@ def test_a_table_may_be_a_frame_or_rows(client: ballpiston.Client) -> None:
         ({"rho": 0.53, "delta": [0.1]}, "points, column rho has to be a list, not 0.53"),
         ({"exponent": {0: 5, 1: 10}}, "points, column exponent has to be a list, not {0: 5, 1: 10}"),
         ({"cells": "48"}, "points, column cells has to be a list, not '48'"),
-        ({"cells": ["4:8:3"]}, "points, column cells has a range; a row has one shape"),
+        ({"cells": ["4:8:3"]}, "points, column cells has the range '4:8:3'"),
         ({"rho": [0.53], "epsilon": [0.1]}, "points has the column epsilon, and epsilon is given"),
         ([], "points has no row"),
         (7, "has to be a pandas.DataFrame"),

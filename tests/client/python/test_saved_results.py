@@ -6,6 +6,7 @@ import json
 import math
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -129,6 +130,27 @@ def test_a_program_prints_names_of_files_that_its_encoding_cannot_spell(home: Ho
     )
     printer = home.python(program, env=os.environ | {"PYTHONIOENCODING": "ascii"})
     assert printer.communicate(timeout=LIMIT) == ("ü\n", "")
+
+
+@pytest.mark.parametrize(
+    "out,code,why",
+    [(">/dev/full", 2, "No space left"), (">&-", 2, "Bad file descriptor"), ("| true", 0, "")],
+)
+def test_a_full_disk_or_closed_output_is_an_error_and_a_closed_pipe_is_none(
+    out: str, code: int, why: str
+) -> None:
+    program = (
+        "import sys\n"
+        "from pathlib import Path\n"
+        "from ballpiston.command import run_program\n"
+        "sys.exit(run_program(lambda _: [Path('name')], []))"
+    )
+    shell = f'"$0" -c "$1" {out}; exit ${{PIPESTATUS[0]}}'
+    command = ["bash", "-c", shell, sys.executable, program]
+    buffered = os.environ | {"PYTHONUNBUFFERED": ""}
+    printer = subprocess.run(command, capture_output=True, text=True, env=buffered, timeout=LIMIT)
+    assert (printer.returncode, bool(printer.stderr)) == (code, bool(why))
+    assert why in printer.stderr
 
 
 def test_an_archive_has_the_arrays_of_the_result(

@@ -57,7 +57,7 @@ TEST_F(NewToken, AnOpenOrMalformedFileStaysUnchanged) {
   EXPECT_EQ(Contents(file_.path), "nonsense\n");
   WriteFile(file_.path, std::string(kMaxSecurityFile - 50, '#'));  // a comment
   EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),
-              HasSubstr("no room"));
+              HasSubstr("permitted: up to 1048576; remove old"));
 }
 
 // No file may grow beyond `bytes`, as on a disk that is full.

@@ -59,7 +59,8 @@ TEST_F(StoreTest, AJobIsThereAfterReopening) {
   EXPECT_EQ(found->question, "question of a");
 }
 
-// Labels can make many jobs of a question, and the store writes nothing else meanwhile.
+// Jobs with different labels can have one question. The search is bounded, because other writes
+// wait for it.
 TEST_F(StoreTest, AnAnswerIsSearchedAmongTheOldestJobs) {
   const auto store = Open();
   ASSERT_OK(store->Commit([](Database& database) {

@@ -40,6 +40,8 @@ def measure(
     """The exact densities at 499 energies after a collision, and the measured ones in bins. The
     first orbit has the seed `seed`, the next ones have the next seeds. W depends neither on rho nor
     on delta."""
+    if not 1 <= bins <= 10_000:
+        raise ValueError(f"bins is {bins}; permitted: 1 to 10000")
     forms = client.analytic(rho, delta, epsilon, outgoing_epsilon="0.001:0.499:499")
     energies = forms["epsilon"][0]
     outgoing = np.arange(1, 500) / 1000
