@@ -116,7 +116,7 @@ absl::StatusOr<std::unique_ptr<OrbitsOnDevice>> OpenDevice(const ServerOptions& 
 
 // Names the server on its cluster. A copy of the store, restored elsewhere, is another server.
 std::string IdentityOf(const Store& store, const DataDirectory& directory) {
-  return absl::StrCat(store.identity(), "-", directory.Number());
+  return absl::StrCat(store.identity(), "-", directory.Inode());
 }
 
 absl::Status CannotListen(const ListenAddress& address) {

@@ -59,11 +59,12 @@ void UseAllDescriptors() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-std::atomic<bool> is_deaf = false;  // the server has stopped listening
+std::atomic<bool> has_stopped_listening = false;
 
 // The only message of gRPC that the log contains.
 void NoteEndOfListening(gpr_log_func_args* message) {
-  if (!absl::StartsWith(message->message, "Failed accept") || is_deaf.exchange(true)) return;
+  const bool is_end = absl::StartsWith(message->message, "Failed accept");
+  if (!is_end || has_stopped_listening.exchange(true)) return;
   LogError(
       absl::StrCat("the server can accept no more connections and ends: start it again, with "
                    "a higher limit of open files (",
@@ -80,7 +81,7 @@ void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer
   while (true) {
     const int signal = sigtimedwait(&signals, nullptr, &kLookInterval);
     if (signal == SIGHUP) Reload(server);
-    if (signal == SIGTERM || signal == SIGINT || is_deaf) break;
+    if (signal == SIGTERM || signal == SIGINT || has_stopped_listening) break;
     if (line.idle_exit.count() > 0 && server.IdleFor() >= line.idle_exit) {
       return LogInfo("the server is idle: stopping");
     }
@@ -88,7 +89,7 @@ void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer
   LogInfo("stopping");
 }
 
-int ExitCode() { return is_deaf ? kExitTryAgain : 0; }
+int ExitCode() { return has_stopped_listening ? kExitTryAgain : 0; }
 
 // Ends the process after this time. Everything that was acknowledged is on disk by then.
 void ExitAfter(std::chrono::milliseconds limit, const BallpistonServer& server) {

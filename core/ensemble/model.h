@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <iterator>
 
 #include "absl/strings/string_view.h"
 
@@ -33,11 +34,14 @@ constexpr bool TakesSamples(Model model) {
 // The model itself; for AUTO the billiard, which answers every experiment by samples.
 constexpr Model Sampled(Model model) { return model == Model::kAuto ? Model::kBilliard : model; }
 
-// Names as users write them, in the order of the enumeration.
+// As users write it; "unknown" for a number that is no Model.
 constexpr absl::string_view Name(Model model) {
+  // In the order of the enumeration.
   constexpr absl::string_view kNames[] = {"auto",   "closed_form", "spectrum",
                                           "markov", "billiard",    "billiard_reference"};
-  return kNames[static_cast<size_t>(model)];
+  static_assert(std::size(kNames) == static_cast<size_t>(Model::kBilliardReference) + 1);
+  const auto index = static_cast<size_t>(model);
+  return index < std::size(kNames) ? kNames[index] : "unknown";
 }
 
 constexpr absl::string_view Name(Precision precision) {

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -53,8 +54,23 @@ void RemoveUnfinished(int signal) {
   _exit(128 + signal);
 }
 
-void HandleSignals(void (*handler)(int)) {
-  for (const int ending : {SIGHUP, SIGINT, SIGTERM}) signal(ending, handler);
+constexpr std::array kEndings = {SIGHUP, SIGINT, SIGTERM};
+using Actions = std::array<struct sigaction, kEndings.size()>;
+
+// Returns the actions before. A signal that is ignored stays so: nohup ignores SIGHUP.
+Actions RemoveUnfinishedAtSignals() {
+  Actions before{};
+  struct sigaction action {};
+  action.sa_handler = &RemoveUnfinished;
+  for (size_t i = 0; i < kEndings.size(); ++i) {
+    sigaction(kEndings[i], nullptr, &before[i]);
+    if (before[i].sa_handler != SIG_IGN) sigaction(kEndings[i], &action, nullptr);
+  }
+  return before;
+}
+
+void Restore(const Actions& before) {
+  for (size_t i = 0; i < kEndings.size(); ++i) sigaction(kEndings[i], &before[i], nullptr);
 }
 
 }  // namespace
@@ -69,11 +85,11 @@ absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::st
   if (file < 0) return CannotWrite(target, errno);
   const UnfinishedCopy made{copy};
   unfinished = &made;
-  HandleSignals(&RemoveUnfinished);
+  const Actions before = RemoveUnfinishedAtSignals();
   const absl::Cleanup remove = [&] {
-    HandleSignals(SIG_DFL);
     close(file);
     made.Remove();
+    Restore(before);
   };
   (*source)->Run("VACUUM INTO ?", copy);  // it is not in WAL mode and has no free pages
   const absl::Status copied = (*source)->TakeStatus();

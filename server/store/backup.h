@@ -17,7 +17,8 @@ namespace ballpiston::server {
 
 // Writes `target`, readable by its owner only, and returns a summary of it. The file appears only
 // when it is complete, checked (check_store.h) and on disk. For one thread at a time: meanwhile
-// SIGHUP, SIGINT and SIGTERM end the program, and remove the unfinished file.
+// SIGHUP, SIGINT and SIGTERM end the program, and remove the unfinished file, unless they are
+// ignored.
 //   ALREADY_EXISTS       the target exists already
 //   NOT_FOUND            no store
 //   PERMISSION_DENIED    the target's folder cannot be written to

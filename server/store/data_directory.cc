@@ -108,9 +108,7 @@ bool IsAServers(const std::string& path) {
 }
 
 // Other users must not reach jobs, results and the socket.
-absl::Status CloseToOthers(const std::string& path) {
-  struct stat found {};
-  if (stat(path.c_str(), &found) != 0) return NotWritable(path, errno);
+absl::Status CloseToOthers(const std::string& path, const struct stat& found) {
   if (found.st_uid != geteuid()) {
     return absl::PermissionDeniedError(absl::StrCat("data folder ", path,
                                                     " belongs to another user (", found.st_uid,
@@ -147,7 +145,9 @@ absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
   const absl::Status made = MakeDirectories(path);
   if (!made.ok()) return made;
   if (access(path.c_str(), W_OK | X_OK) != 0) return NotWritable(path, errno);
-  const absl::Status closed = CloseToOthers(path);
+  struct stat folder {};
+  if (stat(path.c_str(), &folder) != 0) return NotWritable(path, errno);
+  const absl::Status closed = CloseToOthers(path, folder);
   if (!closed.ok()) return closed;
   const std::string lock_path = absl::StrCat(path, "/", kLockFile);
   const int lock = open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
@@ -157,16 +157,17 @@ absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
     // A killed server left its address. It is removed before clients can read this server's id.
     unlink(AddressFile(path).c_str());
     WriteProcessId(lock);
-    return DataDirectory(path, lock);
+    return DataDirectory(path, folder.st_ino, lock);
   }
   close(lock);
   return error == EWOULDBLOCK ? InUse(path) : NotWritable(path, error);
 }
 
-DataDirectory::DataDirectory(std::string path, int lock) : path_(std::move(path)), lock_(lock) {}
+DataDirectory::DataDirectory(std::string path, uint64_t inode, int lock)
+    : path_(std::move(path)), inode_(inode), lock_(lock) {}
 
 DataDirectory::DataDirectory(DataDirectory&& other) noexcept
-    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+    : path_(std::move(other.path_)), inode_(other.inode_), lock_(std::exchange(other.lock_, -1)) {}
 
 DataDirectory::~DataDirectory() {
   if (lock_ < 0) return;
@@ -177,11 +178,6 @@ DataDirectory::~DataDirectory() {
 void DataDirectory::Leave() const {
   unlink(AddressFile(path_).c_str());
   EmptyLock(lock_);
-}
-
-uint64_t DataDirectory::Number() const {
-  struct stat found {};
-  return stat(path_.c_str(), &found) == 0 ? found.st_ino : 0;
 }
 
 void DataDirectory::TellAddress(const std::string& address) const {

@@ -56,16 +56,18 @@ class DataDirectory {
   // destructors.
   void Leave() const;
 
-  // Names the folder in its file system, also after a move. A copy of the folder has another one.
-  uint64_t Number() const;
+  // The folder's inode number. It stays the same after a move within a file system; a copy has
+  // another.
+  uint64_t Inode() const { return inode_; }
 
   const std::string& path() const { return path_; }
   std::string FilePath(const std::string& name) const { return path_ + "/" + name; }
 
  private:
-  DataDirectory(std::string path, int lock);
+  DataDirectory(std::string path, uint64_t inode, int lock);
 
   std::string path_;
+  uint64_t inode_;
   int lock_;  // file descriptor
 };
 

@@ -2,6 +2,7 @@
 
 #include "core/ensemble/point_fold.h"
 #include "server/convert/deterministic_bytes.h"
+#include "server/convert/errors.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/store/job_name.h"
@@ -119,7 +120,8 @@ void Expectations::NoteState(const std::string& id, const v1::EnsembleJob& job) 
   const Question& question = known.question;
   known.state = std::max(known.state, job.state());
   known.points_done = std::max(known.points_done, job.progress().points_done());
-  if (job.state() == v1::EnsembleJob::FAILED && !question.crashes) {
+  const bool may_fail = question.crashes && ReasonOf(job.error()) == "ENGINE_CRASHED";
+  if (job.state() == v1::EnsembleJob::FAILED && !may_fail) {
     throw Violation("failed", id, job.error().message());
   }
   if (job.state() == v1::EnsembleJob::CANCELLED && known.cancels_asked == 0) {

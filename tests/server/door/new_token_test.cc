@@ -58,6 +58,7 @@ TEST_F(NewToken, AnOpenOrMalformedFileStaysUnchanged) {
   WriteFile(file_.path, std::string(kMaxSecurityFile - 50, '#'));  // a comment
   EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),
               HasSubstr("permitted: up to 1048576; remove old"));
+  EXPECT_EQ(Contents(file_.path).size(), kMaxSecurityFile - 50);
 }
 
 // No file may grow beyond `bytes`, as on a disk that is full.

@@ -1,6 +1,8 @@
 // Checking and copying stores, also while a server writes to them.
 #include "server/store/backup.h"
 
+#include <csignal>
+
 #include "server/store/check_store.h"
 #include "server/store/job_name.h"
 #include "server/store/schema.h"
@@ -123,6 +125,14 @@ TEST_F(BackupTest, ARestoredCopyResumesToTheSameBytes) {
   RunningServer original({.data_dir = folder_.path()});
   EXPECT_EQ(original.AwaitEnd(unfinished_).state(), EnsembleJob::SUCCEEDED);
   EXPECT_EQ(restored.ResultBytes(unfinished_), original.ResultBytes(unfinished_));
+}
+
+// As `nohup` sets it.
+TEST_F(BackupTest, AnIgnoredSignalStaysIgnored) {
+  MakeStore();
+  signal(SIGHUP, SIG_IGN);
+  EXPECT_OK(BackupStore(Store(), Copy()));
+  EXPECT_EQ(signal(SIGHUP, SIG_DFL), SIG_IGN);
 }
 
 // The operator forgot to move the old store's log away.

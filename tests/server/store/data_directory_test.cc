@@ -39,12 +39,12 @@ TEST_F(DataFolder, TheLockHasTheServersProcessIdWhileItIsHeld) {
   EXPECT_EQ(Contents(path_ + "/lock"), "");
 }
 
-TEST_F(DataFolder, AMovedFolderKeepsItsNumberAndACopyHasAnother) {
-  const uint64_t number = DataDirectory::Open(path_)->Number();
+TEST_F(DataFolder, AMovedFolderKeepsItsInodeAndACopyHasAnother) {
+  const uint64_t inode = DataDirectory::Open(path_)->Inode();
   std::filesystem::rename(path_, path_ + "-moved");
   std::filesystem::copy(path_ + "-moved", path_);
-  EXPECT_EQ(DataDirectory::Open(path_ + "-moved")->Number(), number);
-  EXPECT_NE(DataDirectory::Open(path_)->Number(), number);
+  EXPECT_EQ(DataDirectory::Open(path_ + "-moved")->Inode(), inode);
+  EXPECT_NE(DataDirectory::Open(path_)->Inode(), inode);
 }
 
 TEST_F(DataFolder, AFileOfAnotherProgramNamedLockIsUnchanged) {

@@ -294,6 +294,17 @@ TEST_F(StoreTest, AShutdownWaitsForNoRetry) {
   store->AwaitRetry();
 }
 
+// The store's thread itself asks, so that nothing can be swept meanwhile.
+TEST_F(StoreTest, AShutdownDoesNotWaitForFreeSpace) {
+  const auto store = Open({.delay = kUnreachedLimit});
+  const auto nothing = [](Database&) {};
+  store->Record(nothing, [&](const absl::Status&) {
+    store->StopWaiting();
+    EXPECT_FALSE(store->AwaitSwept());
+  });
+  EXPECT_OK(store->CommitDeletion(nothing));
+}
+
 // Two groups: each result has more bytes than half a group.
 TEST_F(StoreTest, AWriteIsToldWhenItsOwnGroupIsCommitted) {
   const auto store = Open({.delay = kUnreachedLimit});

@@ -167,9 +167,13 @@ TEST_F(WorkerTest, DamagedAndForeignFilesAreGivenBack) {
   files_.files["todo/b"].bytes = "#!/bin/sh\necho this is a script of some length\n";
   Lay("c", lease_);
   files_.files["todo/c"].bytes.resize(100);  // a kill of the machine has cut it
+  storage::Lease strange = RecordOf(lease_);
+  strange.mutable_question()->set_model(77);
+  static_assert(Name(static_cast<Model>(77)) == "unknown");
+  files_.files["todo/d"] = {BytesOf(strange), files_.now};
   EXPECT_OK(Run());
   EXPECT_THAT(Names(), UnorderedElementsAre("done/a.me.returned", "done/b.me.returned",
-                                            "done/c.me.returned"));
+                                            "done/c.me.returned", "done/d.me.returned"));
   EXPECT_THAT(begun_, IsEmpty());
 }
 
