@@ -31,11 +31,11 @@ void CheckLoad(Database& database, const Limits& limits, const v1::EnsembleJob& 
                      " points with this one: ", kWait));
 }
 
-// Refuses the job if pinned and active jobs alone exceed the limit. All other jobs are removed when
-// the store is full (retention.cc).
+// Refuses the job if pinned and active jobs alone, without their checkpoints, exceed the limit. All
+// other jobs are removed when the store is full (retention.cc).
 void CheckStoreSize(Database& database, const Limits& limits, int64_t active_bytes) {
   if (limits.max_store_bytes == 0) return;
-  const int64_t kept = active_bytes + PinnedBytes(database, "");
+  const int64_t kept = active_bytes + PinnedBytesOfEndedJobs(database);
   if (kept <= limits.max_store_bytes) return;
   database.Fail(LimitExceeded("TOO_MANY_STORED_BYTES",
                               absl::StrCat("pinned and active jobs take ", kept,

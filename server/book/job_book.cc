@@ -79,7 +79,7 @@ Acceptance JobBook::NewAcceptance(const Principal& caller,
   job.set_priority(request.priority());
   *job.mutable_labels() = request.labels();
   job.mutable_progress()->set_points(static_cast<int32_t>(PointCount(checked.spec)));
-  SetNumbers({.bytes = BytesOfJob(job.spec())}, job);
+  SetNumbers({.bytes = BytesOfJob(job)}, job);
   acceptance.fresh = request.fresh();
   acceptance.samples = SamplesOfAllPoints(checked.spec);
   acceptance.violations = checked.violations;
@@ -182,12 +182,12 @@ absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
 
 namespace {
 
-// Refuses to pin the job if its principal's pinned jobs would then take more than half of the
-// store, which has to have room for others. An active job counts with the results that it has.
-void CheckPin(Database& database, const Limits& limits, const v1::EnsembleJob& job) {
+// Refuses to pin the job, which takes `bytes`, if its principal's pinned jobs would then take more
+// than half of the store, which has to have room for others.
+void CheckPin(Database& database, const Limits& limits, const v1::EnsembleJob& job, int64_t bytes) {
   const int64_t most = limits.max_store_bytes / 2;
   if (most == 0) return;
-  const int64_t pinned = PinnedBytes(database, job.principal()) + StoredBytesOf(job);
+  const int64_t pinned = PinnedBytes(database, job.principal()) + bytes;
   if (pinned <= most) return;
   database.Fail(
       LimitExceeded("TOO_MANY_PINNED_BYTES",
@@ -206,7 +206,10 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Update(const Principal& caller, const s
     v1::EnsembleJob& job = record.job;
     if (change.pinned && job.results_expired()) database.Fail(ResultsExpired(JobName(id)));
     const bool is_new_pin = change.pinned.value_or(false) && !job.pinned();
-    if (is_new_pin && caller.role != Role::kAdmin) CheckPin(database, limits_, job);
+    if (is_new_pin && caller.role != Role::kAdmin) {
+      const std::shared_ptr<Job> active = active_.Find(id);
+      CheckPin(database, limits_, job, active ? active->Numbers().bytes : StoredBytesOf(job));
+    }
     job.set_pinned(change.pinned.value_or(job.pinned()));
     job.set_priority(change.priority.value_or(job.priority()));
     if (change.labels) *job.mutable_labels() = {change.labels->begin(), change.labels->end()};

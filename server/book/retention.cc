@@ -6,7 +6,8 @@
 // expired jobs are deleted in the same order; then the next principal follows. So the
 // results of the principal that stores most expire first.
 // The data of active and pinned jobs are never removed here, so the store may grow beyond the
-// bound; if they alone exceed it, no new job is accepted (acceptance.h).
+// bound; if they alone, without their checkpoints, exceed it, no new job is accepted
+// (acceptance.h).
 #include <algorithm>
 #include <cstdint>
 #include <utility>

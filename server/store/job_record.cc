@@ -11,13 +11,15 @@ namespace {
 // The latest time that a Timestamp can hold.
 constexpr absl::Time kLastTime = absl::FromUnixSeconds(253'402'300'799);
 
-// A job's row, and its entries in the indices, without the specification.
+// A job's row, and its entries in the indices, without the specification and the labels.
 constexpr int64_t kJobRow = 540;
 
 }  // namespace
 
-int64_t BytesOfJob(const v1::EnsembleSpec& spec) {
-  return kJobRow + static_cast<int64_t>(spec.ByteSizeLong());
+int64_t BytesOfJob(const v1::EnsembleJob& job) {
+  size_t bytes = job.spec().ByteSizeLong();
+  for (const auto& [key, value] : job.labels()) bytes += key.size() + value.size();
+  return kJobRow + static_cast<int64_t>(bytes);
 }
 
 v1::JobProgress ProgressOf(const v1::EnsembleJob& job, const JobNumbers& numbers) {

@@ -61,7 +61,7 @@ v1::JobProgress ProgressOf(const v1::EnsembleJob& job, const JobNumbers& numbers
 void SetNumbers(const JobNumbers& numbers, v1::EnsembleJob& job);
 
 // The bytes of a job without results in the store, about.
-int64_t BytesOfJob(const v1::EnsembleSpec& spec);
+int64_t BytesOfJob(const v1::EnsembleJob& job);
 
 // The job's stored_bytes. 0 if a damaged row has a value that is not a number of bytes.
 int64_t StoredBytesOf(const v1::EnsembleJob& job);

@@ -257,15 +257,20 @@ std::vector<std::string> PrincipalsBySize(Database& database) {
 }
 
 int64_t PinnedBytes(Database& database, const std::string& principal) {
-  return database.Integer("SELECT sum(bytes) FROM jobs WHERE pinned = 1 AND ? IN ('', principal)",
+  return database.Integer("SELECT sum(bytes) FROM jobs WHERE pinned = 1 AND principal = ?",
                           principal);
+}
+
+int64_t PinnedBytesOfEndedJobs(Database& database) {
+  return database.Integer(absl::StrCat(
+      "SELECT sum(bytes) FROM jobs WHERE pinned = 1 AND state NOT IN (", kActiveStates, ")"));
 }
 
 void ExpireJob(Database& database, int64_t sequence) {
   std::optional<JobRecord> record = FindJobBySequence(database, sequence);
   if (!record || record->job.pinned()) return;
   record->job.set_results_expired(true);
-  record->job.set_stored_bytes(static_cast<double>(BytesOfJob(record->job.spec())));
+  record->job.set_stored_bytes(static_cast<double>(BytesOfJob(record->job)));
   UpdateJob(database, *record);
   DropResults(database, sequence);
 }

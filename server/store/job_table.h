@@ -119,8 +119,9 @@ int64_t CountExpirable(Database& database, absl::Time ended_before);  // Removab
 
 // The principals with jobs; those with the most stored bytes come first.
 std::vector<std::string> PrincipalsBySize(Database& database);
-// Of one principal or, if it is empty, of all. An active job counts without its results.
+// Of the principal's pinned jobs. An active job counts without its results.
 int64_t PinnedBytes(Database& database, const std::string& principal);
+int64_t PinnedBytesOfEndedJobs(Database& database);  // of all principals
 
 // After these two, the sweeper removes the results (sweeper.h); nobody can find them meanwhile.
 // ExpireJob has no effect on a pinned job. It keeps the row, so retries of its request are still

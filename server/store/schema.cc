@@ -42,7 +42,7 @@ CREATE INDEX jobs_by_principal ON jobs (principal, sequence, bytes, state);
 CREATE INDEX jobs_that_may_expire ON jobs (end_time, principal, bytes, expired, pinned)
   WHERE end_time IS NOT NULL AND expired = 0 AND pinned = 0;
 CREATE INDEX jobs_that_expired ON jobs (end_time, principal, bytes, expired) WHERE expired = 1;
-CREATE INDEX jobs_that_are_pinned ON jobs (principal, bytes, pinned) WHERE pinned = 1;
+CREATE INDEX jobs_that_are_pinned ON jobs (principal, bytes, pinned, state) WHERE pinned = 1;
 CREATE INDEX jobs_by_question ON jobs (principal, question)
   WHERE question <> x'' AND state = 4 AND expired = 0;
 CREATE INDEX jobs_by_family ON jobs (principal, family, samples DESC)

@@ -11,7 +11,7 @@ inline const Principal kAnn{"ann", Role::kSubmit};
 inline const Principal kBen{"ben", Role::kSubmit};
 inline const Principal kRoot{"root", Role::kAdmin};
 
-// Jobs with these seeds fail, or wait at the gate.
+// Jobs with these seeds fail, or wait at the gate from point BookTest::held_from_ on.
 inline constexpr uint64_t kFailingSeed = 1013, kHeldSeed = 1014;
 
 class BookTest : public testing::Test {
@@ -27,9 +27,10 @@ class BookTest : public testing::Test {
                                                      .stall = kUnreachedLimit,
                                                      .reserve_bytes = 0}));
     pool_ = std::make_unique<ThreadPool>(
-        2, FakeExperimentsBySeed([this](uint64_t seed, size_t, uint64_t, std::stop_token stop) {
+        2,
+        FakeExperimentsBySeed([this](uint64_t seed, size_t point, uint64_t, std::stop_token stop) {
           if (seed == kFailingSeed) throw std::runtime_error("the ball left the cell");
-          if (seed == kHeldSeed) gate_.Pass(stop);
+          if (seed == kHeldSeed && point >= held_from_) gate_.Pass(stop);
         }));
     book_ = std::make_unique<JobBook>(*store_, limits_, pool_->scheduler());
     ASSERT_OK(book_->Resume());
@@ -77,6 +78,7 @@ class BookTest : public testing::Test {
   }
 
   Gate gate_;
+  std::atomic<size_t> held_from_ = 0;
   const TemporaryFolder folder_;
   const std::string path_ = folder_.File("store.sqlite3");
   Limits limits_;

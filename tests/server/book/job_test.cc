@@ -24,6 +24,13 @@ TEST(Job, AToleranceGivesNoFraction) {
   EXPECT_FALSE(ProgressOf(job, {}).has_fraction());
 }
 
+TEST(Job, LabelsCountAmongItsBytes) {
+  EnsembleJob job;
+  const int64_t bytes = BytesOfJob(job);
+  (*job.mutable_labels())["run"] = "12";
+  EXPECT_EQ(BytesOfJob(job), bytes + 5);
+}
+
 TEST(Job, AnOldSnapshotIsReplacedIfTheJobHasChanged) {
   Job job(JobWithPoints(1));
   int made = 0;

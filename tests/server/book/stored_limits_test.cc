@@ -198,7 +198,7 @@ TEST_F(StoredLimitsTest, ManySmallJobsKeepTheBound) {
       record.job.mutable_progress()->set_points(1);
       InsertJob(database, record);
       JobEnd end;
-      end.numbers.bytes = BytesOfJob(record.job.spec());
+      end.numbers.bytes = BytesOfJob(record.job);
       EndJob(database, record.sequence, end);
     }
   }));
@@ -229,6 +229,22 @@ TEST_F(StoredLimitsTest, OnlyAnAdminPinsMoreThanHalfOfTheStore) {
   EXPECT_THAT(std::string(refused.message()), testing::HasSubstr("permits 100000"));
   EXPECT_OK(book_->Update(kAnn, first, {.pinned = true}));
   EXPECT_OK(book_->Update(kRoot, second, {.pinned = true}));
+}
+
+TEST_F(StoredLimitsTest, AnActiveJobIsPinnedWithItsResults) {
+  Start({.max_store_bytes = 200'000});
+  held_from_ = 600;
+  const std::string active = Id(kAnn, Request(kHeldSeed, 601));
+  AwaitThat([&] { return Get(active).progress().points_done() == 600; });
+  EXPECT_EQ(ReasonOf(book_->Update(kAnn, active, {.pinned = true}).status()),
+            "TOO_MANY_PINNED_BYTES");
+}
+
+TEST_F(StoredLimitsTest, APinnedActiveJobCountsOnce) {
+  const std::string active = Id(kAnn, Request(kHeldSeed, 900));
+  ASSERT_OK(book_->Update(kAnn, active, {.pinned = true}));
+  Start({.max_store_bytes = static_cast<int64_t>(1.5 * Get(active).stored_bytes())});
+  EXPECT_OK(Create(kBen, Request(1)));
 }
 
 TEST_F(StoredLimitsTest, AStoreFullOfPinnedJobsRejectsNewJobs) {
