@@ -33,7 +33,7 @@ class CollisionSampler : private BlockQueue, private CollisionObserver {
   // billiard. Where `pause` is true, NextRecords returns soon.
   CollisionSampler(const PointExperiment& experiment, const ExperimentKind& kind,
                    std::function<bool()> pause);
-  CollisionSampler(const CollisionSampler&) = delete;  // its run has its address
+  CollisionSampler(const CollisionSampler&) = delete;  // run_ holds a pointer to this object
 
   // Records that follow the earlier ones, some 65,536 at most; none if the pause came before the
   // next ones were complete. Empty after the last record. An orbit has no record of an escape or an

@@ -125,7 +125,8 @@ class LocalPoint : private BlockQueue {
   ChunkFold chunks_;
 };
 
-// Computes a whole point on the calling thread. The target has no budget, which nothing would end.
+// Computes a whole point on the calling thread. Requires a target without a budget: nothing would
+// end it.
 BlockResult FoldPoint(const PointExperiment& experiment);
 
 // Computes one block on the calling thread.

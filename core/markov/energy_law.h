@@ -42,7 +42,8 @@ class EnergyLaw {
 
   // A place after the first jump, with the masses that jump from it into each bin.
   struct FirstJump {
-    double rate, weight;
+    double rate;    // of jumps from this place
+    double weight;  // of this place: quadrature weight times the density of the jump to it
     std::vector<double> into_bins;
   };
 

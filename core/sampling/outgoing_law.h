@@ -31,7 +31,7 @@ class OutgoingLaw {
 
  private:
   static SignedDirection At(double x);                    // with the ball's y >= 0
-  double Weight(const SignedDirection& direction) const;  // below 1
+  double Weight(const SignedDirection& direction) const;  // at most 1
 
   double exponent_;
   double ball_;    // sqrt(eb)/(sqrt(eb) + sqrt(ep))

@@ -15,8 +15,7 @@ namespace ballpiston {
 
 class StepEnvelope {
  public:
-  // bound(a, b) is not less than the density between a and b. It is called for each step, and is
-  // positive for one of them.
+  // bound(a, b) is an upper bound of the density between a and b. At least one is positive.
   template <typename Bound>
   StepEnvelope(double from, double to, const Bound& bound)
       : from_(from), width_((to - from) / kSteps) {
@@ -30,7 +29,7 @@ class StepEnvelope {
     }
   }
 
-  // Calls density(x), the last time for the number that it returns.
+  // Calls density(x) for each proposal, and returns the x that is accepted.
   template <typename Density>
   double Draw(CounterRandom& random, const Density& density) const {
     for (;;) {

@@ -93,7 +93,7 @@ TEST(StandardErrors, OfMeanSigmaDoesNotDependOnTheSample) {
   EXPECT_EQ(constant.batches, 0u);
 }
 
-// At this exponent all starts have sigma = +1, and one return in 90 changes the sign.
+// At this exponent almost all starts have sigma = +1, and one return in 90 changes the sign.
 TEST(StandardErrors, OfReturnsToASlowPistonNeedLongReturns) {
   const std::string question =
       "first-hit rho=0.7 delta=0.0101 epsilon=1e-5 model=billiard samples=500 exponent=";

@@ -45,6 +45,18 @@ class LawByMidpoints {
   std::vector<double> sums_ = {0};
 };
 
+TEST(StepEnvelope, StepsOfHeightZeroAreNeverDrawn) {
+  const auto is_inside = [](double a, double b) {
+    return (a >= 0.25 && b <= 0.5) || (a >= 0.625 && b <= 0.75);
+  };
+  const StepEnvelope steps(0, 1, [&](double a, double b) { return is_inside(a, b) ? 1.0 : 0.0; });
+  CounterRandom random(3, 0, 0);
+  for (int i = 0; i < 10'000; ++i) {
+    const double x = steps.Draw(random, [](double) { return 1.0; });
+    ASSERT_TRUE(is_inside(x, x)) << x;
+  }
+}
+
 class OutgoingLawOf : public testing::TestWithParam<std::tuple<double, double>> {};
 
 // False alarms: 2.7e-6 for each law, and 6e-7 for its symmetry.
@@ -62,6 +74,18 @@ TEST_P(OutgoingLawOf, AgreesWithQuadrature) {
   }
   EXPECT_LT(oracle::KolmogorovSmirnov(places, LawByMidpoints(epsilon, exponent)), 2.6);
   EXPECT_NEAR(sine.mean, 0, 5 * *sine.StandardError());
+}
+
+// A proposal takes two numbers, and a draw one more. They are counted by drawing them again.
+TEST_P(OutgoingLawOf, ThreeInFourProposalsAreAccepted) {
+  constexpr int kDraws = 10'000;
+  const auto [epsilon, exponent] = GetParam();
+  const OutgoingLaw law(epsilon, exponent);
+  CounterRandom random(3, 0, 0), again(3, 0, 0);
+  for (int i = 0; i < kDraws; ++i) law.Draw(random);
+  int numbers = 0;
+  for (const uint64_t next = random.Bits(); again.Bits() != next;) ++numbers;
+  EXPECT_LE((numbers - kDraws) / 2, kDraws * 4 / 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(EnergiesAndExponents, OutgoingLawOf,
