@@ -1,4 +1,5 @@
-// What a program of the server does first, whatever it inherits from the program that starts it.
+// Each program of the server begins with StartProcess. It replaces settings that the process may
+// have inherited: closed standard files, the file mask, ignored signals.
 #pragma once
 
 #include <fcntl.h>

@@ -34,7 +34,7 @@ constexpr bool TakesSamples(Model model) {
 // The model itself; for AUTO the billiard, which answers every experiment by samples.
 constexpr Model Sampled(Model model) { return model == Model::kAuto ? Model::kBilliard : model; }
 
-// As users write it; "unknown" for a number that is no Model.
+// The name as users write it. The name of a number that is not a Model is "unknown".
 constexpr absl::string_view Name(Model model) {
   // In the order of the enumeration.
   constexpr absl::string_view kNames[] = {"auto",   "closed_form", "spectrum",

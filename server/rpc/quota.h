@@ -84,7 +84,7 @@ struct Quotas {
   Quota calls;
   // Watches and traces. Each has a thread.
   Quota streams;
-  // Of traces and samplers, which compute beside the threads for jobs.
+  // Traces and samplers compute in turns, because they compute beside the threads for jobs.
   Turns traces;
 };
 

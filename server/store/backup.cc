@@ -48,7 +48,7 @@ struct UnfinishedCopy {
 };
 const UnfinishedCopy* unfinished = nullptr;
 
-// Of a signal that ends the program.
+// Handles a signal that ends the program.
 void RemoveUnfinished(int signal) {
   unfinished->Remove();
   _exit(128 + signal);

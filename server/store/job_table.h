@@ -120,7 +120,7 @@ int64_t CountExpirable(Database& database, absl::Time ended_before);  // Removab
 
 // The principals with jobs; those with the most stored bytes come first.
 std::vector<std::string> PrincipalsBySize(Database& database);
-// Of the principal's pinned jobs. An active job counts without its results.
+// The bytes of the principal's pinned jobs. The results of active jobs are not counted.
 int64_t PinnedBytes(Database& database, const std::string& principal);
 int64_t PinnedBytesOfEndedJobs(Database& database);  // of all principals
 

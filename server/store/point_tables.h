@@ -34,7 +34,8 @@ struct PointEnd {
   std::string state;  // a compressed storage.Checkpoint; empty: the point cannot be continued
 };
 
-// What a row of the results takes beside its values, with its entries in the indices.
+// The bytes that a row of the table `results` takes in addition to its values. They include the
+// row's entries in the indices.
 inline constexpr size_t kResultRow = 60;
 
 struct PointRow {

@@ -186,7 +186,7 @@ TEST_F(JobWatch, TheTimeToGiveUpStartsAgainWithEveryMessage) {
   EXPECT_OK(Watch());
 }
 
-// As if this process had been stopped during the first stream.
+// A process that is stopped during the first stream is imitated by a sleep in the callback.
 TEST_F(JobWatch, TheTimeToGiveUpBeginsWhenTheStreamBreaks) {
   Start({Unavailable({SnapshotMessage(1, "t")}), Succeeded()});
   options_.give_up_after = absl::Milliseconds(500);

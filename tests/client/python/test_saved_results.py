@@ -121,14 +121,18 @@ def test_sigterm_interrupts_a_program_without_a_traceback(home: Home) -> None:
     assert interrupted.returncode == 130
 
 
-def test_a_program_prints_names_of_files_that_its_encoding_cannot_spell(home: Home) -> None:
-    program = (
+def program_that_prints(name: str) -> str:
+    return (
         "import sys\n"
         "from pathlib import Path\n"
         "from ballpiston.command import run_program\n"
-        "sys.exit(run_program(lambda _: [Path('\\xfc')], []))"
+        f"sys.exit(run_program(lambda _: [Path({ascii(name)})], []))"
     )
-    printer = home.python(program, env=os.environ | {"PYTHONIOENCODING": "ascii"})
+
+
+def test_a_program_prints_names_of_files_that_its_encoding_cannot_spell(home: Home) -> None:
+    ascii_output = os.environ | {"PYTHONIOENCODING": "ascii"}
+    printer = home.python(program_that_prints("\xfc"), env=ascii_output)
     assert printer.communicate(timeout=LIMIT) == ("ü\n", "")
 
 
@@ -139,14 +143,8 @@ def test_a_program_prints_names_of_files_that_its_encoding_cannot_spell(home: Ho
 def test_a_full_disk_or_closed_output_is_an_error_and_a_closed_pipe_is_none(
     out: str, code: int, why: str
 ) -> None:
-    program = (
-        "import sys\n"
-        "from pathlib import Path\n"
-        "from ballpiston.command import run_program\n"
-        "sys.exit(run_program(lambda _: [Path('name')], []))"
-    )
     shell = f'"$0" -c "$1" {out}; exit ${{PIPESTATUS[0]}}'
-    command = ["bash", "-c", shell, sys.executable, program]
+    command = ["bash", "-c", shell, sys.executable, program_that_prints("name")]
     buffered = os.environ | {"PYTHONUNBUFFERED": ""}
     printer = subprocess.run(command, capture_output=True, text=True, env=buffered, timeout=LIMIT)
     assert (printer.returncode, bool(printer.stderr)) == (code, bool(why))
@@ -212,7 +210,7 @@ def test_a_later_version_may_add_fields(first_hits: ballpiston.Result, tmp_path:
 def test_a_document_of_another_program_can_be_loaded(
     first_hits: ballpiston.Result, tmp_path: Path
 ) -> None:
-    """With names in lowerCamelCase, integers of 64 bits as strings, and a value without a number."""
+    """With names in lowerCamelCase, 64-bit integers as strings, and a value without a number."""
     first_hits.save(tmp_path / "saved.json")
     document = json.loads((tmp_path / "saved.json").read_text())
     document["job"] = json_format.MessageToDict(first_hits.job)

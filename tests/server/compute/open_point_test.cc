@@ -190,7 +190,7 @@ TEST(OpenPoint, BeyondTheExpectedEndChunksComeOneByOne) {
   }
 }
 
-// Of more than 64 chunks of one sample.
+// The point has more than 64 chunks of one sample.
 TEST(OpenPoint, FarBeyondTheExpectedEndAnEighthIsLeased) {
   OpenPoint point(PointExperiment::Create({.experiment = &kEquilibrium,
                                            .grid = {{kRho, {0.53}}, {kDelta, {1e-5}}},
