@@ -248,7 +248,7 @@ const FlagGroup kTrace = {
       Text("SHAPE",
            [](Options& o, const std::string& cells) { o.trace.set_cells(ShapeText(cells)); }),
       "a periodic gas of this shape instead of a pair: N, a chain of N cells, or NxM, a lattice of "
-      "N columns and M rows"},
+      "N columns and M rows; at most 1,000 cells"},
      {"--temperature", Number("X", [](Options& o, double x) { o.trace.set_temperature(x); }),
       "temperature of the gas, by default 1; a pair has the energy 1/2"},
      {"--seed", Seed([](Options& o, uint64_t seed) { o.trace.set_seed(seed); }),
@@ -486,8 +486,8 @@ std::vector<Verb> AllVerbs() {
        "watch, result, export, report, cancel and delete find jobs by --label.",
        {kOneJob,
         {Labels("KEY=VALUE"),
-         "a key of a-z, 0-9 and _ . -, and a value of letters, digits and _ . : / @ + -, each of "
-         "at most 63 characters",
+         "a key of a-z, 0-9 and _ . - that begins with a letter, and a value of letters, digits "
+         "and _ . : / @ + -, each of at most 63 characters",
          Argument::kSeveral}},
        With({&kServer}),
        {"label ensembleJobs/ID run=7 who=pilot", "label ID who="},
@@ -569,7 +569,8 @@ std::vector<Verb> AllVerbs() {
       {"server start",
        "start a server on this machine, print its address",
        "The server runs until it is stopped. If a server already runs in the data folder, the "
-       "command prints the address of that server, which may stop when it is idle. Words after -- "
+       "command prints the address of that server, which may stop when it is idle; with --listen, "
+       "--workers or words after -- it fails, because they would have no effect. Words after -- "
        "are flags for ballpistond.",
        {{Words("FLAG",
                [](Options& o, std::string flag) { o.server_flags.push_back(std::move(flag)); }),

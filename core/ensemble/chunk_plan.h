@@ -6,7 +6,8 @@
 // takes a few milliseconds or is 64 samples, whichever is more. So a computation of 10 ms ends
 // after about 10 ms, and the tolerance of a computation of hours is judged at most a few hundred
 // times. A computation that ends when its error is small enough tends to state too small an error.
-// Here it does not, because the number of samples about doubles from one judgement to the next.
+// With many samples it hardly does, because their number about doubles from one judgement to the
+// next; few trajectories are judged later (PointExperiment::ReachesTolerance).
 //
 // If 64 samples take more than a minute, all chunks have fewer samples: as many as take a minute,
 // or one. A tolerance is then judged after each 64 samples.
@@ -67,6 +68,8 @@ class ChunkPlan {
 
   // Of samples that continue each other; 0 if samples are independent.
   uint64_t groups() const { return trajectories_.groups; }
+  // A step is a sample, or a stretch of each trajectory.
+  uint64_t SamplesOfAStep() const { return std::max<uint64_t>(trajectories_.count(), 1); }
   uint64_t warm_up() const { return trajectories_.count() * trajectories_.warm_up; }  // in samples
 
   uint64_t chunks() const { return StagesWith(steps_) * ChunksOfAStage(); }
@@ -94,10 +97,8 @@ class ChunkPlan {
   uint64_t FirstCutChunk() const;
 
  private:
-  // A stage is a chunk, or the chunks of all groups. A step is a sample, or a stretch of each
-  // trajectory.
+  // A stage is a chunk, or the chunks of all groups.
   uint64_t ChunksOfAStage() const { return std::max<uint64_t>(groups(), 1); }
-  uint64_t SamplesOfAStep() const { return std::max<uint64_t>(trajectories_.count(), 1); }
   uint64_t StepsBefore(uint64_t stage) const;
   uint64_t StepsIn(uint64_t stage) const;     // of the planned ones
   uint64_t StagesWith(uint64_t steps) const;  // the fewest that have so many steps

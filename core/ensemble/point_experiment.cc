@@ -115,12 +115,15 @@ double RelativeError(const Estimate& estimate) {
 }
 
 // A value that is many times too large by chance, such as that of a current between nearly equal
-// temperatures, has a small relative error. So a tolerance is not judged with few samples.
+// temperatures, has a small relative error. So a tolerance is not judged with few samples. The
+// scatter of few trajectories is small by chance more often, so theirs is judged later.
 bool PointExperiment::ReachesTolerance(const BlockResult& merged) const {
-  constexpr double kLeastShare = 0.25;
+  constexpr uint64_t kFewTrajectories = 32;
+  const bool has_few = plan_.groups() > 0 && plan_.SamplesOfAStep() <= kFewTrajectories;
+  const double least_share = has_few ? 1 : 0.25;
   const double measured =
       static_cast<double>(merged.samples) - static_cast<double>(plan_.warm_up());
-  return tolerance_ && measured >= kLeastShare * expected_samples_ &&
+  return tolerance_ && measured >= least_share * expected_samples_ &&
          RelativeError(FirstEstimate(merged)) <= *tolerance_;
 }
 

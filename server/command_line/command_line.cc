@@ -26,9 +26,9 @@ constexpr char kDescription[] =
     "The server of ballpiston: computes ensembles of rarely interacting billiards.";
 constexpr char kExitCodes[] =
     "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 the disk of the store is full or\n"
-    "fails, retry later; 2 a wrong flag, an unsafe combination of flags, an address or folder in\n"
-    "use, or a store that is not sound; 6 a data folder that is not writable, or that other users\n"
-    "can enter and that is not the server's own.";
+    "fails, or no descriptor is left for a connection, retry later; 2 a wrong flag, an unsafe\n"
+    "combination of flags, an address or folder in use, or a store that is not sound; 6 a data\n"
+    "folder that is not writable, or that other users can enter and that is not the server's own.";
 constexpr int kHelpIndentation = 8;
 
 constexpr int kMostWorkers = 1024;
@@ -39,6 +39,9 @@ constexpr double kMostLimit = 1e15;
 constexpr double kLeastDays = 1e-3, kLeastStoreBytes = 1e6;
 constexpr int64_t kMostSlurmMinutes = 60 * 24 * 365;
 constexpr int64_t kMostSlurmWorkers = 1'000'000;
+
+// Instead of a default that depends on the machine: --help also makes the page of man.
+constexpr char kOfThisMachine[] = "";
 
 // Values of flags that are converted after all flags were read.
 struct Words {
@@ -53,9 +56,9 @@ struct Words {
 std::string Text(double number) { return absl::StrFormat("%.15g", number); }
 
 template <typename Number>
-void AddNumber(CLI::App& app, const std::string& flag, Number& value, double least, double most,
-               const std::string& description, bool permits_zero = false) {
-  app.add_option(flag, value, description)
+CLI::Option* AddNumber(CLI::App& app, const std::string& flag, Number& value, double least,
+                       double most, const std::string& description, bool permits_zero = false) {
+  return app.add_option(flag, value, description)
       ->transform(Between<Number>(least, most, permits_zero))
       ->type_name("N")
       ->capture_default_str();
@@ -144,11 +147,12 @@ void AddServerFlags(CLI::App& app, CommandLine& line) {
           "machines can reach needs --tls-certificate, --tls-key and --access-file.\n"
           "Default: the Unix socket server.socket in the data folder");
   AddText(app, "--data-dir,--data_dir", line.server.data_dir, "DIR",
-          "folder of jobs and results, created if it does not exist; one server at a time uses it")
-      ->capture_default_str();
+          "folder of jobs and results, created if it does not exist; one server at a time uses\n"
+          "it. Default: ~/.local/state/ballpiston; XDG_STATE_HOME replaces ~/.local/state");
   AddNumber(app, "--workers", line.server.workers, 1, kMostWorkers,
             "threads that compute; by default one for each core that the affinity and the control\n"
-            "group (cgroup) of this process permit");
+            "group (cgroup) of this process permit")
+      ->default_str(kOfThisMachine);
   AddWord(app, "--device", line.server.device, {kProcessor, kGpu},
           "what computes the flights of pairs for these threads; results do not depend on it. gpu\n"
           "needs a program that was built with CUDA, and a device");
@@ -221,7 +225,7 @@ void AddLimitFlags(CLI::App& app, Limits& limits) {
   BeginGroup(app, "Limits; 0 means no limit");
   const auto add = [&app](const char* flag, auto& limit, const char* description,
                           double least = 0) {
-    AddNumber(app, flag, limit, least, kMostLimit, description, /*permits_zero=*/true);
+    return AddNumber(app, flag, limit, least, kMostLimit, description, /*permits_zero=*/true);
   };
   add("--max-active-jobs-per-principal", limits.max_active_jobs_per_principal,
       "jobs that have not ended, of one principal");
@@ -235,11 +239,13 @@ void AddLimitFlags(CLI::App& app, Limits& limits) {
       "open watches and traces of one principal");
   add("--max-memory-mib", limits.max_memory_mib,
       "MiB of memory of all points that this server computes at a time, by an upper bound.\n"
-      "By default 80 % of the memory of this machine or of the server's control group");
+      "By default 80 % of the memory of this machine or of the server's control group")
+      ->default_str(kOfThisMachine);
   add("--retain-days", limits.retain_days,
       "days from the end of a job until its results expire, unless it is pinned", kLeastDays);
   add("--max-store-bytes", limits.max_store_bytes,
-      "bytes of the store; shortly before it is full, results expire, the oldest first",
+      "bytes of the store; above 95 % results expire: the oldest of the principal that stores\n"
+      "most; if none are left, the oldest expired jobs are deleted",
       kLeastStoreBytes);
 }
 

@@ -217,8 +217,8 @@ uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
 
 // Blocks that have begun are awaited: without them short orbits would be preferred, because a block
 // of long ones is more likely to be in progress at the end. A lease normally has all the rest of
-// its point, but not on a server with a cluster, where such blocks are dropped. Blocks of
-// trajectories take a time that does not depend on what happens in them.
+// its point, but not on a server with a cluster, where such blocks are dropped. Trajectories end
+// with all of their first stage at least: an error needs several groups.
 void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun) {
   if (!spec_->target.budget_seconds || open.work < BudgetOfAPoint(*spec_, workers_)) return;
   const ChunkPlan& plan = open.experiment()->plan();
@@ -228,7 +228,8 @@ void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun
     open.RequestEnd();
     return;
   }
-  if (open.fold().HasBlocks()) open.fold().Finish();
+  const bool all_have_begun = open.fold().state().chunk >= plan.groups();
+  if (open.fold().HasBlocks() && all_have_begun) open.fold().Finish();
 }
 
 void Run::NoteShortfall(size_t point, const OpenPoint& open) {

@@ -61,7 +61,7 @@ TEST(ServerFlags, HelpHasDefaultsRangesAndExitCodesInShortLines) {
   const std::string page = Server({"--help"}).out;
   for (const char* text : {"\n\nLimits; 0 means no limit:\n", "--max-streams N:0 to 32768=2048\n",
                            "--drain-seconds SECONDS:0 to 3600=10\n", "{info,warning,error}=info\n",
-                           ".local/state/ballpiston\n", "--workers N:1 to 1024=",
+                           "Default: ~/.local/state/ballpiston;", "--workers N:1 to 1024\n",
                            "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 "}) {
     EXPECT_THAT(page, HasSubstr(text));
   }

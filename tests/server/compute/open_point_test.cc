@@ -207,15 +207,7 @@ TEST(OpenPoint, FarBeyondTheExpectedEndAnEighthIsLeased) {
 // ---- samples that continue each other ----
 
 std::shared_ptr<const PointExperiment> SteadyExperiment() {
-  return PointExperiment::Create({.experiment = &kGasConduction,
-                                  .grid = {{kRho, {0.53}},
-                                           {kDelta, {0.1}},
-                                           {kCells, {CodeOf({.columns = 2})}},
-                                           {kHot, {2}},
-                                           {kCold, {1}}},
-                                  .target = {.samples = 1000},
-                                  .model = Model::kMarkov},
-                                 0);
+  return PointExperiment::Create(SteadySpec({.samples = 1000}), 0);
 }
 
 TEST(OpenPoint, GroupsOfTrajectoriesAreLeasesOfTheirOwn) {

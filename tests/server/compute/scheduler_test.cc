@@ -130,6 +130,29 @@ TEST_F(SchedulerTest, AToleranceAloneThatTheMostSamplesDoNotReachIsMissed) {
               StatusIs(absl::StatusCode::kDeadlineExceeded, HasSubstr("point 1: tolerance 1e-06")));
 }
 
+TEST_F(SchedulerTest, ARunWithoutAPointLeftEndsAtOnce) {
+  const auto journal = std::make_shared<RecordingJournal>();
+  RunRequest request = RunOf(1, FakeSpec(1, 3), journal);
+  request.finished[0] = true;
+  scheduler_.Add(std::move(request));
+  ASSERT_TRUE(journal->outcome);
+  EXPECT_OK(*journal->outcome);
+}
+
+TEST(Budget, TrajectoriesEndWithTheirFirstStageAtTheEarliest) {
+  FactoryOpener opener(
+      [](const EnsembleSpec& spec, size_t point) { return PointExperiment::Create(spec, point); });
+  Scheduler scheduler(opener, 1);
+  SteppedExecutor local(scheduler);
+  const EnsembleSpec spec = SteadySpec({.budget_seconds = kSpentAtOnce});
+  const auto journal = std::make_shared<RecordingJournal>();
+  scheduler.Add(RunOf(1, spec, journal));
+  local.TakeAllTurns();
+  const ChunkPlan plan = PointExperiment::Create(spec, 0)->plan();
+  EXPECT_EQ(journal->finished.at(0).samples, plan.SamplesBefore(plan.groups()));
+  scheduler.Shutdown();
+}
+
 // The point has fewer samples than a tolerance requires without a budget (docs/answers.md).
 TEST_F(SchedulerTest, AtTheEndOfABudgetTheStatedErrorAloneDecides) {
   const auto outcome_of = [&](int64_t key, double tolerance) {

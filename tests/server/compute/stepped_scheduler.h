@@ -95,6 +95,18 @@ inline EnsembleSpec SixChunks(int points = 1) {
   return spec;
 }
 
+// 16 groups of trajectories.
+inline EnsembleSpec SteadySpec(const Target& target) {
+  return {.experiment = &kGasConduction,
+          .grid = {{kRho, {0.53}},
+                   {kDelta, {0.1}},
+                   {kCells, {CodeOf({.columns = 2})}},
+                   {kHot, {2}},
+                   {kCold, {1}}},
+          .target = target,
+          .model = Model::kMarkov};
+}
+
 inline RunRequest RunOf(int64_t key, const EnsembleSpec& spec, const JournalPointer& journal) {
   RunRequest request;
   request.key = key;

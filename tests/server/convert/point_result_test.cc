@@ -74,14 +74,17 @@ TEST(PointResult, LimitsNoiseFloorsCurvesAndRemarksAreKept) {
             R"(points { value: 1 position: 1.5 } })");
 }
 
-TEST(PointResult, ARemarkNamesTheEstimatesWhoseModelErrorIsUnknown) {
+TEST(PointResult, ARemarkNamesTheEstimatesWhoseModelErrorIsUnknownAndAreNoClosedForms) {
   const EnsembleSpec spec =
       SpecOf(&kEnergyRelaxation, PaperPoint(0.2), {.samples = 64}, Model::kMarkov);
   const auto experiment = PointExperiment::Create(spec, 0, {Model::kMarkov, "", std::nullopt});
-  const v1::PointResult result = PointResultOf(0, *experiment, FoldPoint(*experiment));
+  PointSummary summary;
+  summary.estimates = {{.name = "time", .value = 1, .exact = 2},
+                       {.name = "mean", .value = 3, .exact = 3}};
+  const v1::PointResult result = ResultOf(0, *experiment, summary);
   EXPECT_THAT(result.remarks(),
-              testing::Contains(testing::StartsWith(absl::StrCat(
-                  "no bound of the model error is known for ", result.estimates(0).name()))));
+              testing::ElementsAre("no bound of the model error is known for time"));
+  EXPECT_THAT(result.estimates(1), testing::Property(&v1::Estimate::model_error, 0));
 }
 
 TEST(PointResult, EveryParameterHasAFieldAndComesBack) {

@@ -86,7 +86,7 @@ TEST(AccessList, ErrorsNameTheLineAndDoNotQuoteIt) {
       {"token " + good + " " + std::string(65, 'a') + " read", "1 to 64"},
       {"token " + good + " alice " + secret, "read, submit, admin"},
       {"token " + good + " alice READ", "read, submit, admin"},
-      {"token " + good + " alice read " + secret, "2027-01-31"},
+      {"token " + good + " alice read " + secret, "permitted: 2027-01-31T"},
       {"token " + good + " alice read infinite-future", "2027-01-31"},
       {"token " + good + " alice read 2030-13-01", "2027-01-31"},
       {"token " + good + " alice read 2030-06-01 " + secret, "the line of a token"},

@@ -20,6 +20,13 @@ class AnalyticServiceTest : public testing::Test {
   v1::EvaluatePairsResponse response_;
 };
 
+// No field was forgotten. A number that is 0 has no bytes.
+void ExpectNoZero(const google::protobuf::Message& message) {
+  std::vector<const google::protobuf::FieldDescriptor*> filled;
+  message.GetReflection()->ListFields(message, &filled);
+  EXPECT_EQ(std::ssize(filled), message.GetDescriptor()->field_count()) << message.DebugString();
+}
+
 TEST_F(AnalyticServiceTest, EveryPairHasItsPointRhoOutermost) {
   request_.add_rho(0.55);
   request_.add_delta(0.1);
@@ -39,7 +46,9 @@ TEST_F(AnalyticServiceTest, ValuesAreThoseOfTheClosedForms) {
   EXPECT_NEAR(point.gas_delta_bound(), 0.2, 1e-14);
   EXPECT_NEAR(point.tau_ball_piston(), 4 * point.volume() / point.area_ball_piston(),
               1e-13 * point.tau_ball_piston());
+  ExpectNoZero(point);
   ASSERT_EQ(point.energies_size(), 3);
+  ExpectNoZero(point.energies(1));
   EXPECT_NEAR(point.energies(0).phi(), std::sqrt(8) / M_PI, 1e-15);
   EXPECT_NEAR(point.energies(1).phi(), 1, 1e-15);
   EXPECT_NEAR(point.energies(2).phi(), std::sqrt(2), 1e-15);
@@ -47,6 +56,7 @@ TEST_F(AnalyticServiceTest, ValuesAreThoseOfTheClosedForms) {
   ASSERT_EQ(point.energies(1).kernel_size(), 1);
   EXPECT_NEAR(point.energies(1).kernel(0), 0.5 / (2 * M_PI * std::sqrt(0.125 * 0.125)), 1e-14);
   ASSERT_EQ(point.canonical_size(), 1);
+  ExpectNoZero(point.canonical(0));
   EXPECT_NEAR(point.canonical(0).mean_f(), 1 / std::sqrt(4 * M_PI), 1e-15);
   EXPECT_NEAR(point.canonical(0).mean_h(), 0.5 * point.canonical(0).mean_f(), 1e-15);
 }
