@@ -61,7 +61,7 @@ class RecordingJournal : public RunJournal {
     changed.notify_all();
   }
 
-  void AwaitRoom() override {}
+  void AwaitRoom() override { await_room(); }
 
   absl::Status AwaitEnd() {  // if threads compute the run
     std::unique_lock lock(mutex);
@@ -71,6 +71,7 @@ class RecordingJournal : public RunJournal {
 
   std::map<size_t, FoldState> stored;  // set before the run: what an earlier process stored
   int unreadable = 0;                  // the first reads of points that fail
+  std::function<void()> await_room = [] {};
   std::mutex mutex;
   std::condition_variable changed;
   int ends = 0;

@@ -3,7 +3,6 @@
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/dynamic_message.h"
 #include "tests/server/preamble.h"
-#include "tests/server/rpc/watch_stream.h"
 #include "tests/server/secure_server.h"
 
 namespace ballpiston::server {
