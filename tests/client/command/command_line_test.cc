@@ -42,6 +42,7 @@ TEST_F(CommandLineTest, MessagesShortenLongWords) {
                              {"run", word},
                              {"run", "--" + word},
                              {"run", "--rho", word},
+                             {"run", "--rho", absl::StrReplaceAll(word, {{"x", "5,"}}) + "5"},
                              {"run", "--format", word},
                              {"run", "first-hit", word},
                              {"help", word},
