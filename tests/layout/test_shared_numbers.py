@@ -40,12 +40,7 @@ def test_shared_numbers_are_the_same_on_all_pages() -> None:
     assert numbers.keys() - used == set(), "on no page"
 
 
-# Tests of the tests.
-def test_numbers_are_read_from_the_table() -> None:
-    page = "x\n| name | number |\n|---|---|\n| `a-1` | 0.1 µs | time | `make` |\n"
-    assert numbers_in(page) == {"a-1": "0.1 µs"}
-
-
+# A test of the tests.
 def test_numbers_are_whole_words() -> None:
     (name, first), (_, second) = marked_numbers("it takes 12<!--a--> s, or\n112<!--a--> s")
     assert name == "a"

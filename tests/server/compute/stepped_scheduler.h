@@ -4,7 +4,6 @@
 
 #include "server/compute/guarded.h"
 #include "server/compute/run_journal.h"
-#include "server/compute/scheduler.h"
 #include "tests/server/preamble.h"
 #include "tests/server/worker/computed_chunks.h"
 

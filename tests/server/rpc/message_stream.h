@@ -1,8 +1,6 @@
 // A stream of the server's messages, message by message: a watch of a job, or a trace.
 #pragma once
 
-#include "ballpiston/v1/ensemble.grpc.pb.h"
-#include "ballpiston/v1/trace.grpc.pb.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {

@@ -7,8 +7,6 @@
 namespace ballpiston::server {
 namespace {
 
-using ::testing::IsSupersetOf;
-
 std::set<std::string> MetricsNamedIn(const std::string& rules) {
   static const std::regex name("\\b(ballpiston|grpc_server)_\\w+");
   return {std::sregex_token_iterator(rules.begin(), rules.end(), name),
@@ -30,7 +28,7 @@ std::set<std::string> ServedMetrics() {
 TEST(AlertRules, EveryMetricIsServed) {
   const auto named = MetricsNamedIn(Contents(SourcePath("server/prometheus/alerts.yml")));
   EXPECT_THAT(named, Contains("ballpiston_store_failing"));
-  EXPECT_THAT(ServedMetrics(), IsSupersetOf(named));
+  EXPECT_THAT(ServedMetrics(), testing::IsSupersetOf(named));
 }
 
 }  // namespace

@@ -1,13 +1,9 @@
 // The metrics over HTTP.
-#include "grpcpp/generic/generic_stub.h"
 #include "tests/server/http_get.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::Key;
-using ::testing::MatchesRegex;
 
 constexpr char kCreated[] =
     "grpc_server_handled_total{grpc_code=\"OK\",grpc_method=\"CreateEnsembleJob\","
@@ -26,7 +22,7 @@ std::map<std::string, double> Samples(const std::string& page) {
   std::istringstream lines(page.substr(page.find("\r\n\r\n") + 4));
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("# HELP ", 0) == 0 || line.rfind("# TYPE ", 0) == 0) continue;
-    EXPECT_THAT(line, MatchesRegex(kSample));
+    EXPECT_THAT(line, testing::MatchesRegex(kSample));
     const size_t space = line.rfind(' ');
     const auto inserted =
         samples.emplace(line.substr(0, space), std::strtod(line.c_str() + space, nullptr));
