@@ -16,7 +16,6 @@
 namespace ballpiston::client {
 
 using testing::Ge;
-using testing::IsSupersetOf;
 using testing::Le;
 using testing::MatchesRegex;
 

@@ -1,14 +1,11 @@
 // The contract of the command line, as pages of commands with their output: transcripts/*.txt. Each
 // page is a test. transcripts/README.md describes a page, and says how to write the output again.
-#include <google/protobuf/text_format.h>
-
 #include <list>
 #include <regex>
 
 #include "absl/strings/numbers.h"
 #include "google/rpc/status.pb.h"
 #include "tests/client/preamble.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston::client {
 namespace {

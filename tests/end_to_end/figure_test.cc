@@ -1,6 +1,5 @@
 // Figures, each from one command, and resumed after an interruption. What the figures compute is
 // tested in tests/client/python/test_figures.py.
-#include "absl/strings/str_replace.h"
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
@@ -32,20 +31,6 @@ TEST_F(FigureTest, LeavesDataAndPictures) {
                            "mean-free-time.svg"}) {
     EXPECT_THAT(result.out, HasSubstr(File(name) + "\n"));
   }
-}
-
-TEST_F(FigureTest, AnEditedModuleIsUsedAndKept) {
-  const ProcessResult copied = server_.Client(Split("figure cell --edit --out " + folder_));
-  EXPECT_THAT(copied, ExitsWith(0));
-  EXPECT_EQ(copied.out, File("cell.py") + "\n");
-  const std::string edited =
-      absl::StrReplaceAll(Contents(File("cell.py")), {{"ρ = {rho", "radius = {rho"}});
-  WriteFile(File("cell.py"), edited);
-  const ProcessResult result = RunProgram(Cell());
-  EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_THAT(result.err, HasSubstr("cell.py, which differs"));
-  EXPECT_THAT(Contents(File("cell.svg")), HasSubstr("radius = 0.529561"));
-  EXPECT_EQ(Contents(File("cell.py")), edited);
 }
 
 TEST_F(FigureTest, MissingProgramsAndPackagesAreNamed) {

@@ -2,11 +2,6 @@
 // server.
 #include <httplib.h>
 
-#include <atomic>
-#include <functional>
-#include <thread>
-#include <utility>
-
 #include "tests/end_to_end/programs.h"
 #include "tests/server/http_get.h"
 

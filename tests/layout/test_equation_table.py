@@ -57,26 +57,13 @@ def test_every_name_is_in_its_file() -> None:
     assert not wrong, "\n".join(wrong)
 
 
-# Tests of the tests.
-def test_rows_are_read_between_the_marks() -> None:
-    row = "| `Gv` | volume | `a.h: A` |\n"
-    header = "| label | what it is | where |\n|---|---|---|\n"
-    marked = f"{row}<!-- equations:begin -->\n{header}{row}<!-- equations:end -->\n{row}"
-    assert rows_of(marked) == [Row("Gv", "`a.h: A`")]
-    assert rows_of(row) == []
-
-
-def test_references_are_files_with_names() -> None:
-    found = references("`a.h: A`, of `x`; `core/b/c.h: D2` and more")
-    assert found == [("core/closed_form/a.h", "A"), ("core/b/c.h", "D2")]
-
-
+# A test of the tests.
 def test_missing_files_and_names_are_errors() -> None:
     right = [Row("K", "`kernel.h: PairKernel`"), Row("n", "No function: a constant")]
     assert wrong_rows(right) == []
-    wrong = [Row("K", "`kernel.h: Kern`"), Row("dGc", "`none.h: A`"), Row("n", "a constant")]
-    assert wrong_rows(wrong) == [
+    wrong = [Row("K", "`kernel.h: Kern`"), Row("dGc", "of `x`, `core/none.h: A2` and more")]
+    assert wrong_rows([*wrong, Row("n", "a constant")]) == [
         "K: there is no Kern in core/closed_form/kernel.h",
-        "dGc: there is no A in core/closed_form/none.h",
+        "dGc: there is no A2 in core/none.h",
         "n: names no function",
     ]

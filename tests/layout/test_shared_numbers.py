@@ -1,6 +1,7 @@
 """A number that several pages state is equal on all of them, and in docs/numbers.md. A page marks
 such a number with its name: 21<!--gain-rare-avx2-->. The files that name the version of the
-project, its date or the engine's version agree, too. So do `make` and what is installed."""
+project, its date or the engine's version agree, too. So do `make` and what is installed, and the
+alert rules and the server's metrics."""
 
 from __future__ import annotations
 
@@ -40,12 +41,7 @@ def test_shared_numbers_are_the_same_on_all_pages() -> None:
     assert numbers.keys() - used == set(), "on no page"
 
 
-# Tests of the tests.
-def test_numbers_are_read_from_the_table() -> None:
-    page = "x\n| name | number |\n|---|---|\n| `a-1` | 0.1 µs | time | `make` |\n"
-    assert numbers_in(page) == {"a-1": "0.1 µs"}
-
-
+# A test of the tests.
 def test_numbers_are_whole_words() -> None:
     (name, first), (_, second) = marked_numbers("it takes 12<!--a--> s, or\n112<!--a--> s")
     assert name == "a"
@@ -84,3 +80,11 @@ def test_make_builds_all_programs_and_pages_that_are_installed() -> None:
     installed = re.findall(r"(?:install\(TARGETS|custom_target\()([\w -]+) (?:RUNTIME|ALL)", lists)
     built = found("Makefile", "^PROGRAMS := (.*)").split()
     assert {"ballpiston-worker", "pages"} <= set(" ".join(installed).split()) <= set(built)
+
+
+def test_alert_rules_name_metrics_of_the_server() -> None:
+    """Those in quotes in the server's code. `make test-alerts` tests the rules."""
+    metric = r"\b(?:ballpiston|grpc_server)_\w+"
+    named = set(re.findall(metric, text_of("server/prometheus/alerts.yml")))
+    code = text_of("server/rpc/server_metrics.cc") + text_of("server/status/call_observer.cc")
+    assert {"ballpiston_store_failing"} <= named <= set(re.findall(f'"({metric})"', code))

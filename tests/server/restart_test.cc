@@ -50,10 +50,6 @@ TEST(Restart, WithLessMemoryOnlyNewJobsAreRefused) {
   EXPECT_EQ(ReasonOf(server->Create(FreshRequest(gas))), "INVALID_SPEC");
 }
 
-void Change(const TemporaryFolder& folder, const std::string& sql) {
-  ChangeStore(folder.File("store.sqlite3"), sql);
-}
-
 // A job of the fake experiments, stopped with a finished point and a part of the second.
 std::string LeaveUnfinished(const TemporaryFolder& folder) {
   Gate gate;
@@ -69,9 +65,9 @@ std::string LeaveUnfinished(const TemporaryFolder& folder) {
 TEST(Restart, AnotherEngineComputesAllAgain) {
   TemporaryFolder folder;
   const std::string name = LeaveUnfinished(folder);
-  Change(folder, "UPDATE results SET result = x'00'; UPDATE checkpoints SET record = x'00'");
-  ChangeJobs(folder.File("store.sqlite3"),
-             [](EnsembleJob& job) { job.set_engine_version("0.0.1"); });
+  const std::string store = folder.File("store.sqlite3");
+  ChangeStore(store, "UPDATE results SET result = x'00'; UPDATE checkpoints SET record = x'00'");
+  ChangeJobs(store, [](EnsembleJob& job) { job.set_engine_version("0.0.1"); });
   std::atomic<int> computed = 0;
   RunningServer server(
       InFolder(folder, 2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; })));
@@ -82,8 +78,12 @@ TEST(Restart, AnotherEngineComputesAllAgain) {
   EXPECT_EQ(server.ResultBytes(name).size(), 2u);
 }
 
-void ExpectThatTheJobFailsAndTheServerStays(const TemporaryFolder& folder,
-                                            const std::string& name) {
+// `damage` changes the file of a store with an unfinished job.
+void ExpectThatTheJobFailsAndTheServerStays(
+    const std::function<void(const std::string& store)>& damage) {
+  const TemporaryFolder folder;
+  const std::string name = LeaveUnfinished(folder);
+  damage(folder.File("store.sqlite3"));
   RunningServer server(InFolder(folder));
   const EnsembleJob job = server.AwaitEnd(name);
   EXPECT_EQ(job.name(), name);
@@ -98,21 +98,17 @@ TEST(Restart, AJobWithDamagedRowsFailsAndTheServerStays) {
         "UPDATE jobs SET message = x''", "UPDATE checkpoints SET record = x'ff'",
         "UPDATE results SET point = 7", "UPDATE results SET point = -1"}) {
     SCOPED_TRACE(damage);
-    TemporaryFolder folder;
-    const std::string name = LeaveUnfinished(folder);
-    Change(folder, damage);
-    ExpectThatTheJobFailsAndTheServerStays(folder, name);
+    ExpectThatTheJobFailsAndTheServerStays(
+        [damage](const std::string& store) { ChangeStore(store, damage); });
   }
 }
 
 TEST(Restart, AJobWithAnImpossibleNumberOfPointsFailsAndTheServerStays) {
   for (const int32_t points : {-1, 1, std::numeric_limits<int32_t>::max()}) {
     SCOPED_TRACE(points);
-    TemporaryFolder folder;
-    const std::string name = LeaveUnfinished(folder);
-    ChangeJobs(folder.File("store.sqlite3"),
-               [&](EnsembleJob& job) { job.mutable_progress()->set_points(points); });
-    ExpectThatTheJobFailsAndTheServerStays(folder, name);
+    ExpectThatTheJobFailsAndTheServerStays([points](const std::string& store) {
+      ChangeJobs(store, [points](EnsembleJob& job) { job.mutable_progress()->set_points(points); });
+    });
   }
 }
 

@@ -1,6 +1,5 @@
 #include "tests/server/running_server.h"
 
-#include "grpc/grpc.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {

@@ -9,7 +9,6 @@
 #include <openssl/bio.h>
 #include <openssl/ssl.h>
 
-#include "grpcpp/security/credentials.h"
 #include "server/door/principal.h"
 #include "tests/credentials/test_authority.h"
 #include "tests/server/preamble.h"

@@ -24,11 +24,7 @@ class ThreadPool {
   const ThreadExecutor& threads() const { return threads_; }
 
   void Add(RunRequest request) { scheduler_.Add(std::move(request)); }
-  void Cancel(int64_t run) { scheduler_.Cancel(run); }
   void Shutdown() { scheduler_.Shutdown(); }
-  std::vector<LivePoint> NewestPoints(int64_t run, size_t limit) const {
-    return scheduler_.NewestPoints(run, limit);
-  }
 
  private:
   const std::unique_ptr<PointOpener> opener_;

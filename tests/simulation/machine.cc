@@ -85,8 +85,6 @@ Machine::Machine(uint64_t seed)
     : random_(seed), now_(Clock::time_point(std::chrono::seconds(kStartSeconds))) {}
 Machine::~Machine() = default;
 
-Machine* Machine::Current() { return current; }
-
 void Machine::Run(std::function<void()> main) {
   Fiber* const first = Start(std::move(main));
   first->is_joined = true;

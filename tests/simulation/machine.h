@@ -21,11 +21,9 @@ class Machine {
   Machine(const Machine&) = delete;
   Machine& operator=(const Machine&) = delete;
 
-  // Null outside of Run. Then the locks are those of the system.
-  static Machine* Current();
-
   // Returns when `main` and all threads that it started have ended. Throws std::runtime_error if
-  // all threads wait, and no wait has a time limit.
+  // all threads wait, and no wait has a time limit. Outside of Run the locks are those of the
+  // system.
   void Run(std::function<void()> main);
 
   // ---- for the threads ----

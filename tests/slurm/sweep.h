@@ -2,13 +2,9 @@
 // that is large enough for it.
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdio>
 
 #include "tests/end_to_end/programs.h"
-#include "tests/support/preamble.h"
-#include "tests/support/process.h"
 
 namespace ballpiston {
 

@@ -42,6 +42,7 @@ TEST_F(CommandLineTest, MessagesShortenLongWords) {
                              {"run", word},
                              {"run", "--" + word},
                              {"run", "--rho", word},
+                             {"run", "--rho", absl::StrReplaceAll(word, {{"x", "5,"}}) + "5"},
                              {"run", "--format", word},
                              {"run", "first-hit", word},
                              {"help", word},
@@ -138,12 +139,12 @@ TEST_F(CommandLineTest, AFigureStartsPythonAndReturnsItsExitCode) {
   const ScopedVariable program("BALLPISTON_PYTHON", python);
   const ScopedVariable server("BALLPISTON_SERVER");  // the figure sets it
   const Outcome outcome =
-      Ballpiston({"figure", "mean-free-time", "--out", "figures", "--quick", "--samples", "7",
-                  "--relaxation-delta", "0.1,0.2", "--server", "h:1"});
+      Ballpiston({"figure", "mean-free-time", "--out", "figures", "--quick", "--edit", "--samples",
+                  "7", "--relaxation-delta", "0.1,0.2", "--server", "h:1"});
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_EQ(Contents(home_.File("said")),
             "-m ballpiston.figures mean-free-time --samples 7 --relaxation-delta 0.1,0.2 "
-            "--out=figures --quick h:1 1\n");
+            "--out=figures --quick --edit h:1 1\n");
   WriteFile(python, "#!/bin/sh\n[ \"$1\" = -c ] || kill -9 $$\n");
   const Outcome killed = Ballpiston({"figure", "mean-free-time"});
   EXPECT_EQ(killed.code, 4);

@@ -1,3 +1,4 @@
+// tests/end_to_end/interrupt_test.cc sends each of the signals to the whole program.
 #include "client/command/interrupts.h"
 
 #include <latch>
@@ -36,17 +37,6 @@ void SleepForEver() {
 void ExpectInterrupted(const std::function<void()>& act,
                        const testing::Matcher<const std::string&>& output = testing::_) {
   EXPECT_EXIT(act(), testing::ExitedWithCode(130), output);
-}
-
-TEST(InterruptsDeathTest, EachSignalEndsTheProgram) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    SCOPED_TRACE(signal);
-    ExpectInterrupted([signal] {
-      const Interrupts interrupts;
-      Send(signal);
-      SleepForEver();
-    });
-  }
 }
 
 TEST(InterruptsDeathTest, TheInnermostFarewellRuns) {
@@ -136,10 +126,6 @@ TEST_F(InterruptsTest, AnIgnoredSignalStaysIgnored) {
     Send(SIGHUP);
   }
   signal(SIGHUP, old);
-}
-
-TEST_F(InterruptsTest, AScopeWithoutInterruptsHasNoEffect) {
-  const Interrupts::Scope scope(nullptr, [] { std::abort(); });
 }
 
 }  // namespace

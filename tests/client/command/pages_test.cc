@@ -2,7 +2,6 @@
 #include "client/command/reference.h"
 #include "client/command/verb_table.h"
 #include "tests/client/preamble.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston::client {
 namespace {
@@ -34,8 +33,6 @@ TEST(VerbTable, EveryExampleIsRead) {
 
 // ---- reference.h ----
 
-using ::testing::UnorderedElementsAreArray;
-
 class ReferenceTest : public ::testing::Test {
  protected:
   const EmptyHome home_;
@@ -57,7 +54,7 @@ TEST_F(ReferenceTest, EachVerbHasAManPage) {
     pages.push_back(PageName(&verb) + ".1");
     EXPECT_EQ(Contents(folder + "/" + pages.back()), ManPage(&verb));
   }
-  EXPECT_THAT(NamesIn(folder), UnorderedElementsAreArray(pages));
+  EXPECT_THAT(NamesIn(folder), testing::UnorderedElementsAreArray(pages));
 }
 
 TEST_F(ReferenceTest, ManPagesReferToEachOther) {

@@ -56,17 +56,11 @@ TEST_F(QuestionTest, EachFlagReachesItsField) {
 
 // ---- spec_file.h ----
 
-TEST(SpecFile, IsProtoJson) {
-  ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec,
-                       ParseSpec("s.json",
-                                 "\xEF\xBB\xBF"
-                                 R"({"experiment": "FIRST_HIT", "seed": 7,
-          "grid": {"rho": [0.53], "epsilon": [0.1, 0], "cells": ["12", "4x3"], "hot": [3, 2]},
-          "target": {"samples": "100", "estimate": "conductivity"}})"));
-  const auto expected = FromText<v1::EnsembleSpec>(
-      "experiment: FIRST_HIT seed: 7 target { samples: 100 estimate: 'conductivity' }"
-      "grid { rho: 0.53 epsilon: [0.1, 0] cells: ['12', '4x3'] hot: [3, 2] }");
-  EXPECT_EQ(spec.SerializeAsString(), expected.SerializeAsString()) << spec.DebugString();
+TEST(SpecFile, MayBeginWithAByteOrderMark) {
+  const auto spec =
+      ParseSpec("s.json", "\xEF\xBB\xBF{\"grid\": {\"cells\": [\"4x3\"], \"rho\": [0]}}");
+  ASSERT_OK(spec);
+  EXPECT_EQ(spec->ShortDebugString(), R"(grid { rho: 0 cells: "4x3" })");
 }
 
 TEST(SpecFile, NamesTheUnknownField) {

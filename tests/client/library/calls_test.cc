@@ -113,16 +113,14 @@ auto IsUuid(int version) {
                                    "[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}"));
 }
 
-TEST(RequestId, ARandomIdIsAUuid) {
-  std::set<std::string> ids;
-  for (int i = 0; i < 1000; ++i) ids.insert(NewRequestId());
-  EXPECT_THAT(ids, AllOf(SizeIs(1000), Each(IsUuid(4))));
-}
-
-TEST(RequestId, TheIdOfATextIsAUuid) {
-  std::set<std::string> ids;
-  for (int i = 0; i < 1000; ++i) ids.insert(RequestIdFor("question " + std::to_string(i)));
-  EXPECT_THAT(ids, AllOf(SizeIs(1000), Each(IsUuid(8))));
+TEST(RequestId, RandomIdsAndThoseOfTextsAreUuids) {
+  std::set<std::string> random, of_texts;
+  for (int i = 0; i < 1000; ++i) {
+    random.insert(NewRequestId());
+    of_texts.insert(RequestIdFor(absl::StrCat("question ", i)));
+  }
+  EXPECT_THAT(random, AllOf(SizeIs(1000), Each(IsUuid(4))));
+  EXPECT_THAT(of_texts, AllOf(SizeIs(1000), Each(IsUuid(8))));
 }
 
 // A later version of the program must make the same ids.

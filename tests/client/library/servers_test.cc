@@ -28,12 +28,6 @@ class ChildProcessTest : public ::testing::Test {
   const TemporaryFolder folder_;
 };
 
-TEST_F(ChildProcessTest, ReturnsTheExitStatus) {
-  EXPECT_EQ(RunShell("exit 0"), 0);
-  EXPECT_EQ(RunShell("exit 7"), 7);
-  EXPECT_EQ(RunShell("kill -9 $$"), 128 + 9);
-}
-
 TEST_F(ChildProcessTest, RunsInItsFolderAndAppendsItsOutputToAPrivateFile) {
   RunShell("pwd; echo error >&2");
   RunShell("echo again");
@@ -271,15 +265,6 @@ TEST_F(LocalServerTest, TheEnvironmentCanSetTheProgram) {
   EXPECT_EQ(FindLocalServer()->program, "/opt/server");
   server_program_.Set("bin/server");
   EXPECT_EQ(FindLocalServer()->program, (fs::current_path() / "bin/server").string());
-}
-
-TEST_F(LocalServerTest, UsesAServerThatAnswers) {
-  FakeServer running;
-  running.Start();
-  const LocalServer server{
-      .folder = home_.string(), .socket = running.SocketPath(), .program = Program("exit 1")};
-  EXPECT_OK(ConnectToLocalServer(server));
-  EXPECT_FALSE(fs::exists(home_ / "server.log"));  // no program was started
 }
 
 TEST_F(LocalServerTest, PermanentFailuresToStartKeepTheirStatus) {

@@ -100,18 +100,19 @@ TEST_F(JobWatch, AnEndWithoutTheTerminalStateIsADisconnection) {
   EXPECT_THAT(Tokens(), ElementsAre("", "t1"));
 }
 
-class ErrorOfWatch : public JobWatch, public ::testing::WithParamInterface<grpc::StatusCode> {};
-
-TEST_P(ErrorOfWatch, EndsTheWatch) {
-  Start({Unavailable({SnapshotMessage(10, "t1")}), {{}, grpc::Status(GetParam(), "text")}});
-  EXPECT_THAT(Watch(), StatusIs(GetParam()));
-  EXPECT_THAT(Tokens(), SizeIs(2));
+TEST_F(JobWatch, OtherErrorsEndTheWatch) {
+  const std::vector<grpc::StatusCode> codes = {grpc::StatusCode::NOT_FOUND,
+                                               grpc::StatusCode::UNAUTHENTICATED,
+                                               grpc::StatusCode::RESOURCE_EXHAUSTED};
+  std::vector<WatchScript> watches;
+  for (const grpc::StatusCode code : codes) {
+    watches.push_back(Unavailable({SnapshotMessage(10, "t1")}));
+    watches.push_back({{}, grpc::Status(code, "text")});
+  }
+  Start(watches);
+  for (const grpc::StatusCode code : codes) EXPECT_THAT(Watch(), StatusIs(code));
+  EXPECT_THAT(Tokens(), ElementsAre("", "t1", "", "t1", "", "t1"));
 }
-
-INSTANTIATE_TEST_SUITE_P(JobWatch, ErrorOfWatch,
-                         ::testing::Values(grpc::StatusCode::NOT_FOUND,
-                                           grpc::StatusCode::UNAUTHENTICATED,
-                                           grpc::StatusCode::RESOURCE_EXHAUSTED));
 
 // Each pause is up to a quarter longer at random. A message restarts the pauses.
 TEST_F(JobWatch, PausesDoubleUpToTheirMaximum) {

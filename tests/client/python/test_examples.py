@@ -41,15 +41,6 @@ def test_the_sweep_prints_a_table_and_saves_its_result(tmp_path: Path) -> None:
 NOTEBOOKS = sorted(path.name for path in EXAMPLES.glob("*.ipynb"))
 
 
-def test_there_are_four_tutorials() -> None:
-    assert NOTEBOOKS == [
-        "own_observable.ipynb",
-        "paper_sweep.ipynb",
-        "pipeline.ipynb",
-        "two_reservoirs.ipynb",
-    ]
-
-
 def text_of(cell: dict[str, Any]) -> str:
     """What the cell printed when its output was stored."""
     outputs = [output for output in cell["outputs"] if output["output_type"] == "stream"]

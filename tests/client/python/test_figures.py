@@ -319,41 +319,16 @@ def test_every_figure_has_its_parts() -> None:
 
 
 @pytest.mark.parametrize(
-    "flags,text",
-    [
-        (["--samples", "3"], "--samples: the figure cell has no such variable"),
-        (["--sead", "3"], "did you mean '--seed'?"),
-        (["--quick", "--full"], "--full: not allowed with argument --quick"),
-        (["--seed", "1.5"], "--seed has to be a whole number"),
-        (["--seed", "-1"], "--seed has to be from 0 to"),
-        (["--delta", "0.1,0.2"], "--delta: '0.1,0.2' is not one number"),
-        (["--delta", "0.9"], "delta is 0.9; permitted"),
-    ],
-)
-def test_wrong_values_are_named(
-    flags: list[str], text: str, home: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert command.main(["cell", "--out", str(tmp_path), *flags]) == 2
-    assert text in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
     "words,text",
     [
-        (["mean-free-tim", "--out", "x"], "'mean-free-tim' is not a figure (cell, cell-3d, "),
-        (["cell"], "--out is missing: name a folder"),
-    ],
-)
-def test_a_figure_without_its_name_or_folder_is_an_error(
-    words: list[str], text: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert command.main(words) == 2
-    assert text in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    "words,text",
-    [
+        (["mean-free-tim"], "'mean-free-tim' is not a figure (cell, cell-3d, "),
+        (["cell", "--samples", "3"], "--samples: the figure cell has no such variable"),
+        (["cell", "--sead", "3"], "did you mean '--seed'?"),
+        (["cell", "--quick", "--full"], "--full: not allowed with argument --quick"),
+        (["cell", "--seed", "1.5"], "--seed has to be a whole number"),
+        (["cell", "--seed", "-1"], "--seed has to be from 0 to"),
+        (["cell", "--delta", "0.1,0.2"], "--delta: '0.1,0.2' is not one number"),
+        (["cell", "--delta", "0.9"], "delta is 0.9; permitted"),
         (["stability", "--all-starts", "no"], "--all-starts has to be true or false, not 'no'"),
         (["rates", "--orbits", "0"], "--orbits has to be from 1 to"),
         (["conductivity", "--cells", "3x3"], "cells: 3x3 is a lattice; permitted: lengths of"),
@@ -365,12 +340,17 @@ def test_a_figure_without_its_name_or_folder_is_an_error(
         (["kernel", "--bins", "1e15"], "bins is 1000000000000000; permitted: 1 to 10000"),
     ],
 )
-def test_what_a_figure_cannot_draw_is_refused_before_it_is_measured(
+def test_wrong_values_are_named_before_anything_is_measured(
     words: list[str], text: str, home: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert command.main([*words, "--out", str(tmp_path)]) == 2
     assert text in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_figure_without_a_folder_is_an_error(capsys: pytest.CaptureFixture[str]) -> None:
+    assert command.main(["cell"]) == 2
+    assert "--out is missing: name a folder" in capsys.readouterr().err
 
 
 def test_every_figure_can_be_edited(tmp_path: Path) -> None:
@@ -380,14 +360,17 @@ def test_every_figure_can_be_edited(tmp_path: Path) -> None:
             command.main([name, "--out", str(tmp_path), "--help"])
 
 
-def test_the_data_stay_if_the_picture_fails(
+def test_an_edited_module_is_used_and_kept_and_its_data_stay_if_the_picture_fails(
     home: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     command.main(["cell", "--edit", "--out", str(tmp_path)])
     module = tmp_path / "cell.py"
-    module.write_text(module.read_text() + "\n\ndef draw(_):\n    raise ValueError('no picture')\n")
+    edited = module.read_text() + "\n\ndef draw(_):\n    raise ValueError('no picture')\n"
+    module.write_text(edited)
     assert command.main(["cell", "--out", str(tmp_path)]) == 2
-    assert "no picture" in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert "cell.py, which differs" in error and "no picture" in error
+    assert module.read_text() == edited
     assert list(tmp_path.glob("*.csv")) and not list(tmp_path.glob("*.svg"))
 
 

@@ -27,12 +27,6 @@ TEST(ConnectProtocol, OpensOneWholeEnvelope) {
   }
 }
 
-TEST(ConnectProtocol, StreamsEndWithTheirError) {
-  EXPECT_EQ(EndOfStream(absl::OkStatus()), std::string("\2\0\0\0\2{}", 7));
-  EXPECT_THAT(EndOfStream(absl::UnavailableError("gone")),
-              AllOf(HasSubstr(R"("code":"unavailable")"), HasSubstr(R"("message":"gone")")));
-}
-
 // The protocol's table of codes: name and HTTP status.
 TEST(ConnectProtocol, CodesHaveTheProtocolsNamesAndStatuses) {
   const struct {

@@ -46,12 +46,6 @@ class DiskFailure : public testing::Test {
 
   void LeaveRoomFor(int64_t bytes) { disk_.SetCapacity(disk_.bytes_used() + bytes); }
 
-  // Until the store has tried again several times.
-  void AwaitRetries() const {
-    const int64_t refusals = disk_.refusals();
-    AwaitThat([&] { return disk_.refusals() >= refusals + 3; });
-  }
-
   FaultDisk disk_;
 };
 
@@ -209,7 +203,8 @@ TEST_F(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {
     store->AwaitRoom();
     has_room = true;
   });
-  AwaitRetries();
+  const int64_t refusals = disk_.refusals();
+  AwaitThat([&] { return disk_.refusals() >= refusals + 3; });
   EXPECT_FALSE(has_room);
   disk_.StopRefusing();
   worker.join();

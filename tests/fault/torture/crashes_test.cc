@@ -1,5 +1,5 @@
 // The engine kills the server again and again, always for one job: the job fails, others do not.
-#include "google/rpc/error_details.pb.h"
+#include "server/convert/errors.h"
 #include "server/status/failpoint.h"
 #include "tests/fault/torture/preamble.h"
 
@@ -23,12 +23,6 @@ std::vector<v1::EnsembleSpec> InnocentQuestions() {
 
 v1::EnsembleJob AwaitEnd(const client::Client& client, const std::string& name) {
   return OrThrow(client.Watch(name, {}, {.give_up_after = absl::FromChrono(kPatience)}));
-}
-
-std::string ReasonOf(const v1::EnsembleJob& job) {
-  google::rpc::ErrorInfo info;
-  for (const auto& detail : job.error().details()) detail.UnpackTo(&info);
-  return info.reason();
 }
 
 // Clients that submit all jobs before one of them is computed: the server is killed at once.
@@ -62,7 +56,7 @@ TEST(Crashes, OneJobFailsAndTheOthersHaveTheirBytes) {
   const client::Client client = server.NewClient();
   const v1::EnsembleJob crashed = AwaitEnd(client, names.back());
   EXPECT_EQ(crashed.state(), v1::EnsembleJob::FAILED) << crashed.ShortDebugString();
-  EXPECT_EQ(ReasonOf(crashed), "ENGINE_CRASHED");
+  EXPECT_EQ(server::ReasonOf(crashed.error()), "ENGINE_CRASHED");
   int same = 0;
   for (size_t i = 0; i < answers.size(); ++i) {
     const v1::EnsembleJob job = AwaitEnd(client, names[i]);

@@ -12,8 +12,6 @@ namespace ballpiston::torture {
 namespace {
 
 using server::Database;
-using server::JobRecord;
-using server::Store;
 
 constexpr double kMostSecondsToReady = 2;
 constexpr int kGroup = 1'000;
@@ -35,7 +33,7 @@ std::string SomeResult() {
 void InsertEnded(Database& database, int count, const v1::EnsembleSpec& spec,
                  const std::string& result) {
   for (int i = 0; i < count; ++i) {
-    JobRecord record;
+    server::JobRecord record;
     record.id = server::RandomId();
     *record.job.mutable_spec() = spec;
     server::SetTime(absl::Now(), record.job.mutable_create_time());
@@ -52,7 +50,7 @@ void InsertEnded(Database& database, int count, const v1::EnsembleSpec& spec,
 }
 
 void Fill(const std::string& path, int jobs, const v1::EnsembleSpec& spec) {
-  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(path, {.stall = kUnreachedLimit}));
+  ASSERT_OK_AND_ASSIGN(const auto store, server::Store::Open(path, {.stall = kUnreachedLimit}));
   const std::string result = SomeResult();
   for (int i = 0; i < jobs; i += kGroup) {
     ASSERT_OK(store->Commit([&](Database& database) {

@@ -1,6 +1,4 @@
 // The server stays healthy with a thousand watchers of one job, and stops in time.
-#include <grpcpp/grpcpp.h>
-
 #include <list>
 
 #include "client/library/job_watch.h"

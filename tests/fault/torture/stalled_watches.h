@@ -5,7 +5,7 @@
 #include <list>
 
 #include "tests/server/own_channel.h"
-#include "tests/server/rpc/watch_stream.h"
+#include "tests/server/rpc/message_stream.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::torture {

@@ -1,7 +1,6 @@
 // The outcome of one Create: a new job, an earlier one, or an error.
 #include "server/book/acceptance.h"
 
-#include "google/protobuf/text_format.h"
 #include "tests/server/book/book_test.h"
 #include "tests/server/preamble.h"
 
@@ -68,7 +67,7 @@ TEST_F(AcceptanceTest, TheSameQuestionIsAnsweredByTheJobThatSucceeded) {
     EXPECT_FALSE(Get(first).answered_from_store());  // only Create says so
     Start();
   }
-  EXPECT_EQ(List().jobs.size(), 1u);
+  EXPECT_EQ(List(Query(), kRoot).jobs.size(), 1u);
 }
 
 TEST_F(AcceptanceTest, AnotherQuestionAndAFreshAnswerAreComputed) {
@@ -236,7 +235,7 @@ TEST_F(AcceptanceTest, ARequestIdOfAnotherRequestIsRefused) {
     EXPECT_EQ(Id(kAnn, CreateRequest(Question(), kUuid)), first);
     Start();
   }
-  EXPECT_EQ(List().jobs.size(), 1u);
+  EXPECT_EQ(List(Query(), kRoot).jobs.size(), 1u);
 }
 
 TEST_F(AcceptanceTest, ARequestIdOfACancellationIsNotThatOfAnotherRequest) {

@@ -68,13 +68,14 @@ class BookTest : public testing::Test {
     return id;
   }
 
-  JobsPage List(const Principal& caller = kRoot, JobFilter filter = {}) {
-    return book_
-        ->List(caller, {.filter = std::move(filter),
-                        .before = std::numeric_limits<int64_t>::max(),
-                        .max_jobs = 1000,
-                        .max_bytes = std::numeric_limits<size_t>::max()})
-        .value();
+  static JobsQuery Query(JobFilter filter = {}) {
+    return {.filter = std::move(filter),
+            .before = std::numeric_limits<int64_t>::max(),
+            .max_jobs = 50,
+            .max_bytes = std::numeric_limits<size_t>::max()};
+  }
+  JobsPage List(const JobsQuery& query = Query(), const Principal& caller = kAnn) {
+    return book_->List(caller, query).value();
   }
 
   Gate gate_;

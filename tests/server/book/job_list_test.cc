@@ -37,19 +37,6 @@ class JobList : public BookTest {
     Insert(jobs);
   }
 
-  JobsPage List(const JobsQuery& query, const Principal& caller = kAnn) {
-    auto page = book_->List(caller, query);
-    EXPECT_OK(page);
-    return page.ok() ? *std::move(page) : JobsPage();
-  }
-
-  static JobsQuery Query(JobFilter filter = {}) {
-    return {.filter = std::move(filter),
-            .before = std::numeric_limits<int64_t>::max(),
-            .max_jobs = 50,
-            .max_bytes = std::numeric_limits<size_t>::max()};
-  }
-
   static std::vector<std::string> IdsOf(const JobsPage& page) {
     std::vector<std::string> ids;
     for (const EnsembleJob& job : page.jobs) ids.push_back(JobIdOf(job.name()).value_or(""));

@@ -143,10 +143,10 @@ TEST_F(FolderExecutorTest, AFileWhosePointIsNotOpenIsReadAgainAfterAPause) {
   Restart({.look = std::chrono::hours(1)});
   scheduler_->Add(RunOf(1, spec, std::make_shared<RecordingJournal>()));
   int reads = 0;
-  files_.before = [&](const std::string& operation, const std::string&) {
-    reads += operation == "read";
+  files_.Before("read", [&] {
+    ++reads;
     return absl::OkStatus();
-  };
+  });
   for (int look = 0; look < 5; ++look) executor_->Look();
   EXPECT_EQ(reads, 1);
 }
@@ -199,9 +199,7 @@ TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReportedAndChargedOnce) {
   const auto journal = Begin();
   executor_->Look();
   flush_ = absl::OkStatus();
-  files_.before = [](const std::string& operation, const std::string&) {
-    return operation == "remove" ? absl::UnavailableError("slow, too") : absl::OkStatus();
-  };
+  files_.Before("remove", [] { return absl::UnavailableError("slow, too"); });
   executor_->Look();
   executor_->Look();
   EXPECT_THAT(In("done"), ElementsAre(taken + ".finished"));
@@ -292,9 +290,7 @@ TEST_F(FolderExecutorTest, AnEmptiedFolderGivesItsLeasesBack) {
   Restart(kNoTimeOut);
   const auto journal = Begin();
   Take(In("todo")[0]);
-  files_.before = [](const std::string& operation, const std::string&) {
-    return operation == "create" ? absl::UnavailableError("full") : absl::OkStatus();
-  };
+  files_.Before("create", [] { return absl::UnavailableError("full"); });
   executor_->Look();
   files_.files.clear();
   executor_->Look();
@@ -320,10 +316,10 @@ TEST_F(FolderExecutorTest, AFolderThatCannotBeUsedGivesItsLeasesBack) {
 // The pauses double from a second to a minute: the 10th attempt comes after 4 minutes.
 TEST_F(FolderExecutorTest, AFullFolderIsTriedAgainAfterAPause) {
   int attempts = 0;
-  files_.before = [&](const std::string& operation, const std::string&) {
-    attempts += operation == "create";
-    return operation == "create" ? absl::UnavailableError("full") : absl::OkStatus();
-  };
+  files_.Before("create", [&] {
+    ++attempts;
+    return absl::UnavailableError("full");
+  });
   Begin();
   for (int look = 0; look < 100; ++look) executor_->Look();
   EXPECT_GE(attempts, 1);
@@ -332,9 +328,7 @@ TEST_F(FolderExecutorTest, AFullFolderIsTriedAgainAfterAPause) {
 }
 
 TEST_F(FolderExecutorTest, ALeaseThatCannotBeMovedLeavesNoFile) {
-  files_.before = [](const std::string& operation, const std::string&) {
-    return operation == "move" ? absl::ResourceExhaustedError("full") : absl::OkStatus();
-  };
+  files_.Before("move", [] { return absl::ResourceExhaustedError("full"); });
   Begin();
   EXPECT_EQ(executor_->Status().problem, "full");
   EXPECT_THAT(files_.files, IsEmpty());
@@ -342,10 +336,10 @@ TEST_F(FolderExecutorTest, ALeaseThatCannotBeMovedLeavesNoFile) {
 
 TEST_F(FolderExecutorTest, ALeaseGoesBackIfMemoryRunsOutWhileItIsLaid) {
   bool has_failed = false;
-  files_.before = [&](const std::string& operation, const std::string&) {
-    if (operation == "create" && !std::exchange(has_failed, true)) throw std::bad_alloc();
+  files_.Before("create", [&] {
+    if (!std::exchange(has_failed, true)) throw std::bad_alloc();
     return absl::OkStatus();
-  };
+  });
   const auto journal = Begin();
   EXPECT_NE(executor_->Status().problem, "");
   executor_->Look();

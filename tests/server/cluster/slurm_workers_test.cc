@@ -243,10 +243,13 @@ TEST_F(SlurmToolsTest, VariablesThatChangeTheToolsAreRemoved) {
 }
 
 TEST_F(SlurmToolsTest, TheQueueIsReadAndWarningsAreNot) {
-  Install("squeue", "echo 'squeue: warning' >&2; echo 'RUNNING|None'; echo 'PENDING|Priority'");
+  Install("squeue",
+          "echo 'squeue: warning' >&2; printf 'PENDING|Priority\\nPENDING|Resources\\n"
+          "RUNNING|None\\nCOMPLETING|None\\nFAILED|None\\nnonsense\\n'");
   ASSERT_OK_AND_ASSIGN(const SlurmQueue queue, New().Query());
-  EXPECT_EQ(queue.running, 1u);
-  EXPECT_EQ(queue.waiting, 1u);
+  EXPECT_EQ(queue.waiting, 2u);
+  EXPECT_EQ(queue.running, 2u);
+  EXPECT_EQ(queue.never, "");
 }
 
 // The server ends by fflush of all streams and _Exit.
@@ -282,15 +285,6 @@ TEST_F(SlurmToolsTest, AnErrorHasTheToolsMessage) {
   std::filesystem::remove(folder_.File("scancel"));
   EXPECT_THAT(New().Cancel(true),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("failed to run command")));
-}
-
-TEST(SlurmQueue, StatesAreCounted) {
-  const SlurmQueue queue = ParseQueue(
-      "PENDING|Priority\nPENDING|Resources\nRUNNING|None\nCOMPLETING|None\nFAILED|"
-      "None\nnonsense\n");
-  EXPECT_EQ(queue.waiting, 2u);
-  EXPECT_EQ(queue.running, 2u);
-  EXPECT_EQ(queue.never, "");
 }
 
 // The states in the manual of squeue.

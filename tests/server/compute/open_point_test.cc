@@ -69,19 +69,8 @@ TEST(OpenPoint, ChunksThatArrivedEarlyAreSkipped) {
   }
 }
 
-TEST(OpenPoint, OnlyChunksThatAreNotStoredAreLeased) {
-  OpenPoint point = PointOf(SixChunks());
-  StoredPoint stored;
-  for (ChunkResult& chunk : ChunksOf(point, 1, 3)) {
-    stored.chunks.push_back({Model::kBilliard, std::move(chunk)});
-  }
-  ASSERT_OK(point.Resume(std::move(stored)));
-  EXPECT_EQ(Next(point, 1000), Chunks(0, 1));
-  EXPECT_EQ(Next(point, 1000), Chunks(3, 6));
-}
-
 // With a budget, the earlier process may have chosen it.
-TEST(OpenPoint, WhatAnotherModelComputedIsDropped) {
+TEST(OpenPoint, StoredChunksAreNotLeasedAndThoseOfAnotherModelAreDropped) {
   OpenPoint point = PointOf(SixChunks());
   FoldState of_another_plan = FakeState(SixChunks(), 0, 100);
   of_another_plan.chunk = 100;

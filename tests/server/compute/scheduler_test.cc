@@ -235,14 +235,12 @@ TEST(Scheduler, AnExceptionFailsItsRunOnly) {
   ExpectComplete(FakeSpec(3, 20, 15), *journals[15]);
 }
 
-class SlowDisk : public RecordingJournal {
-  void AwaitRoom() override { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }
-};
-
 // Each turn of the first run opens or finishes a point.
 TEST_F(SchedulerTest, AWaitForTheDiskIsTimeOfTheRunWithResults) {
   for (const auto& [key, spec] : {std::pair(1, FakeSpec(100, 1)), {2, FakeSpec(1, 1000)}}) {
-    RunRequest request = RunOf(key, spec, std::make_shared<SlowDisk>());
+    const auto journal = std::make_shared<RecordingJournal>();
+    journal->await_room = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
+    RunRequest request = RunOf(key, spec, journal);
     request.principal = std::to_string(key);
     scheduler_.Add(std::move(request));
   }

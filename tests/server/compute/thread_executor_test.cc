@@ -12,15 +12,6 @@
 namespace ballpiston::server {
 namespace {
 
-class JournalThatWaits : public RecordingJournal {
- public:
-  explicit JournalThatWaits(std::function<void()> wait) : wait_(std::move(wait)) {}
-  void AwaitRoom() override { wait_(); }
-
- private:
-  const std::function<void()> wait_;
-};
-
 // What the next process finds if the kernel kills this one during a block, and during a wait for
 // the disk.
 TEST(ThreadExecutor, ARunIsInTheRecordOnlyWhileItIsComputed) {
@@ -35,7 +26,8 @@ TEST(ThreadExecutor, ARunIsInTheRecordOnlyWhileItIsComputed) {
   Scheduler scheduler(opener, 1);
   ThreadExecutor threads(scheduler, 1, std::numeric_limits<double>::infinity(),
                          std::make_shared<CrashRecord>(folder.path(), before));
-  const auto journal = std::make_shared<JournalThatWaits>([&] { keep(in_a_wait); });
+  const auto journal = std::make_shared<RecordingJournal>();
+  journal->await_room = [&] { keep(in_a_wait); };
   scheduler.Add(RunOf(1, FakeSpec(1, 3), journal));
   threads.Start();
   EXPECT_OK(journal->AwaitEnd());

@@ -6,16 +6,9 @@
 namespace ballpiston::server {
 namespace {
 
-TEST(Errors, CarryReasonDomainAndMetadata) {
-  const grpc::Status status = GrpcStatus(JobNotFound("ensembleJobs/x"));
-  EXPECT_THAT(status, StatusIs(grpc::StatusCode::NOT_FOUND, HasSubstr("ensembleJobs/x")));
-  const ErrorDetails details = DetailsOf(status);
-  EXPECT_EQ(details.reason, "JOB_NOT_FOUND");
-  EXPECT_EQ(details.domain, "ballpiston");
-  EXPECT_EQ(details.metadata.at("name"), "ensembleJobs/x");
-}
-
-TEST(Errors, WithTwoArgumentsHaveTheLastOneInTheMetadata) {
+TEST(Errors, HaveTheLastArgumentInTheMetadata) {
+  EXPECT_THAT(DetailsOf(JobNotFound("ensembleJobs/x")).metadata,
+              ElementsAre(Pair("name", "ensembleJobs/x")));
   const grpc::Status status = GrpcStatus(JobAlreadyEnded("ensembleJobs/$1", "FAILED"));
   EXPECT_THAT(status, StatusIs(grpc::StatusCode::FAILED_PRECONDITION,
                                "ensembleJobs/$1 has ended already: it is FAILED"));

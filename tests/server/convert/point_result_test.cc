@@ -1,6 +1,5 @@
 #include "server/convert/point_result.h"
 
-#include "core/ensemble/point_fold.h"
 #include "server/convert/deterministic_bytes.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/server/preamble.h"

@@ -58,6 +58,7 @@ TEST(Loopback, TheOwnTokenIsThatOfTheServersUserAndEndsWithTheServer) {
     EXPECT_EQ(ModeOf(data.path() + "/tokens"), 0700u);
     std::getline(std::ifstream(file), first);
     EXPECT_OK(CallByName(server.channel(), kListJobs, "", Bearer(first)));
+    EXPECT_EQ(ReasonOf(CallByName(server.channel(), kListJobs)), "CREDENTIALS_MISSING");
   }
   EXPECT_TRUE(std::filesystem::is_empty(data.path() + "/tokens"));
   RunningServer server(options);

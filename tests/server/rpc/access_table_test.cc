@@ -3,7 +3,6 @@
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/dynamic_message.h"
 #include "tests/server/preamble.h"
-#include "tests/server/rpc/watch_stream.h"
 #include "tests/server/secure_server.h"
 
 namespace ballpiston::server {
@@ -164,18 +163,6 @@ TEST_F(AccessTable, HealthNeedsNoTokenAndReflectionDoes) {
                 StatusIs(grpc::StatusCode::UNAUTHENTICATED));
   }
   EXPECT_OK(CallByName(server_.channel(), kReflection, kListServices, Bearer(kAliceReads)));
-}
-
-// Another user of the machine, who cannot read the token of the server's user.
-TEST(LoopbackAccess, EveryMethodExceptHealthNeedsAToken) {
-  RunningServer server({.listen = "127.0.0.1:0"});
-  std::vector<std::string> paths = {kReflection};
-  for (const MethodDescriptor* method : AllMethods()) paths.push_back(PathOf(*method));
-  for (const std::string& path : paths) {
-    EXPECT_THAT(CallByName(server.channel(), path), StatusIs(grpc::StatusCode::UNAUTHENTICATED))
-        << path;
-  }
-  EXPECT_OK(CallByName(server.channel(), kCheckHealth));
 }
 
 }  // namespace

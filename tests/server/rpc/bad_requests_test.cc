@@ -3,7 +3,6 @@
 // convert/spec_test.cc.
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/dynamic_message.h"
-#include "google/protobuf/text_format.h"
 #include "server/rpc/request_check.h"
 #include "tests/server/preamble.h"
 

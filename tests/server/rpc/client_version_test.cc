@@ -1,6 +1,5 @@
 #include "server/rpc/client_version.h"
 
-#include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "server/version.h"
 #include "tests/server/preamble.h"
 
@@ -49,15 +48,8 @@ TEST(ClientVersion, AServerChecksEveryCall) {
         Case{"77.0.0", grpc::StatusCode::FAILED_PRECONDITION, "CLIENT_VERSION_NOT_SERVED"}}) {
     grpc::ChannelArguments arguments;
     arguments.SetUserAgentPrefix("ballpiston/" + version);
-    const auto channel =
-        grpc::CreateCustomChannel(server.address(), grpc::InsecureChannelCredentials(), arguments);
-    grpc::ClientContext context;
-    v1::GetEnsembleJobRequest request;
-    request.set_name("ensembleJobs/none");
-    v1::EnsembleJob job;
-    const grpc::Status status =
-        v1::EnsembleService::NewStub(channel)->GetEnsembleJob(&context, request, &job);
-    EXPECT_THAT(status, IsError(code, reason));
+    TestClient client(OwnChannel(server.address(), nullptr, arguments));
+    EXPECT_THAT(client.Delete("ensembleJobs/none"), IsError(code, reason));
   }
 }
 

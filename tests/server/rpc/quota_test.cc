@@ -64,10 +64,7 @@ TEST(UnreadAnswers, CountAsCallsInProgress) {
     v1::EvaluatePairsResponse response;
     return ReasonOf(server.analytic().EvaluatePairs(&context, {}, &response));
   };
-  grpc::ChannelArguments arguments;
-  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);  // the window of a stream stays at 64 kB
-  const auto channel =
-      grpc::CreateCustomChannel(server.address(), grpc::InsecureChannelCredentials(), arguments);
+  const auto channel = OwnChannel(server.address(), nullptr, SmallWindow());
   std::vector<std::unique_ptr<NamedCall>> unread;
   for (int64_t mib = 0; mib < 2 * kMostMibOfCalls; mib += kMibOfCall) {
     unread.push_back(std::make_unique<NamedCall>(channel, kGetJob));

@@ -1,6 +1,5 @@
 #include "server/rpc/server_status.h"
 
-#include "grpcpp/create_channel.h"
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
 #include "prometheus/text_serializer.h"

@@ -2,6 +2,7 @@
 #include "server/convert/trace.h"
 #include "server/rpc/quota.h"
 #include "tests/server/preamble.h"
+#include "tests/server/rpc/message_stream.h"
 
 namespace ballpiston::server {
 namespace {
@@ -15,24 +16,6 @@ v1::TraceOrbitRequest TraceRequest(int64_t events, const std::string& cells = ""
   return request;
 }
 
-struct TraceStream {
-  TraceStream(TestClient& client, const v1::TraceOrbitRequest& request)
-      : reader(client.trace().TraceOrbit(&context, request)) {}
-
-  std::optional<v1::TraceOrbitResponse> Next() {
-    v1::TraceOrbitResponse message;
-    if (!reader->Read(&message)) return std::nullopt;
-    return message;
-  }
-  grpc::Status End() {  // reads to the end
-    while (Next()) continue;
-    return reader->Finish();
-  }
-
-  grpc::ClientContext context;
-  std::unique_ptr<grpc::ClientReader<v1::TraceOrbitResponse>> reader;
-};
-
 // Far more than gRPC keeps of a stream whose reader stalls.
 const v1::TraceOrbitRequest kLong = TraceRequest(kMaxTracedEvents);
 
@@ -42,8 +25,7 @@ class TraceServiceTest : public testing::Test {
 
   std::vector<v1::TraceOrbitResponse> Trace(const v1::TraceOrbitRequest& request) {
     TraceStream stream(server(), request);
-    std::vector<v1::TraceOrbitResponse> messages;
-    while (auto message = stream.Next()) messages.push_back(*message);
+    auto messages = stream.ToTheEnd();
     EXPECT_OK(stream.reader->Finish());
     return messages;
   }

@@ -1,6 +1,6 @@
 // A watch or a trace ends when the credentials of its call become invalid.
 #include "tests/server/preamble.h"
-#include "tests/server/rpc/watch_stream.h"
+#include "tests/server/rpc/message_stream.h"
 #include "tests/server/secure_server.h"
 
 namespace ballpiston::server {
@@ -53,14 +53,11 @@ TEST_F(WatchCredentialsTest, AWatchEndsWhenItsTokenIsNoLongerValid) {
 
 // The trace has far more events than gRPC keeps of a stream whose reader stalls.
 TEST_F(WatchCredentialsTest, ATraceEndsWhenItsTokenIsRevoked) {
-  const auto request = FromText<v1::TraceOrbitRequest>("rho: 0.53 delta: 0.15 events: 1000000");
-  grpc::ClientContext context;
-  const auto trace = alice_.trace().TraceOrbit(&context, request);
-  v1::TraceOrbitResponse message;
-  ASSERT_TRUE(trace->Read(&message));
+  TraceStream trace(alice_,
+                    FromText<v1::TraceOrbitRequest>("rho: 0.53 delta: 0.15 events: 1000000"));
+  ASSERT_TRUE(trace.Next());
   ReplaceAccess(TokenLine(kOps, {"ops", Role::kAdmin}));
-  while (trace->Read(&message)) continue;
-  EXPECT_THAT(trace->Finish(), Not(IsOk()));  // CANCELLED if the reader was slow
+  EXPECT_THAT(trace.End(), Not(IsOk()));  // CANCELLED if the reader was slow
 }
 
 TEST_F(WatchCredentialsTest, AWatchWithAValidTokenGoesOn) {

@@ -1,7 +1,7 @@
 
 #include "server/rpc/request_check.h"
 #include "tests/server/preamble.h"
-#include "tests/server/rpc/watch_stream.h"
+#include "tests/server/rpc/message_stream.h"
 
 namespace ballpiston::server {
 namespace {
@@ -127,22 +127,6 @@ TEST_F(WatchTest, TheJobHasNoGrid) {
   EXPECT_FALSE(first->job().spec().has_grid());
   EXPECT_EQ(first->job().spec().experiment(), v1::EnsembleSpec::EQUILIBRIUM);
   EXPECT_EQ(first->job().progress().points(), 90'000);
-}
-
-// The point has 10,000 states. A slow reader does not get a state that a newer one has replaced.
-TEST_F(WatchTest, ASlowReaderSkipsStatesOfUnfinishedPoints) {
-  RunningServer& server = Start(10'000);
-  const std::string name = server.Submit(Equilibrium(1, 20'000));
-  WatchStream slow(server, name);
-  ASSERT_TRUE(slow.Next());
-  gate_.AwaitWaiting(2);
-  int messages = 0;
-  slow.Until([&](const WatchMessage& message) {
-    ++messages;
-    return HasPoints(message) &&
-           message.snapshot().points(0).samples() == 10'000 * kFakeSamplesPerBlock;
-  });
-  EXPECT_LT(messages, 10'000);
 }
 
 }  // namespace

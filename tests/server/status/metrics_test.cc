@@ -1,13 +1,9 @@
 // The metrics over HTTP.
-#include "grpcpp/generic/generic_stub.h"
 #include "tests/server/http_get.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
-
-using ::testing::Key;
-using ::testing::MatchesRegex;
 
 constexpr char kCreated[] =
     "grpc_server_handled_total{grpc_code=\"OK\",grpc_method=\"CreateEnsembleJob\","
@@ -26,7 +22,7 @@ std::map<std::string, double> Samples(const std::string& page) {
   std::istringstream lines(page.substr(page.find("\r\n\r\n") + 4));
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("# HELP ", 0) == 0 || line.rfind("# TYPE ", 0) == 0) continue;
-    EXPECT_THAT(line, MatchesRegex(kSample));
+    EXPECT_THAT(line, testing::MatchesRegex(kSample));
     const size_t space = line.rfind(' ');
     const auto inserted =
         samples.emplace(line.substr(0, space), std::strtod(line.c_str() + space, nullptr));
@@ -91,9 +87,7 @@ TEST_F(MetricsTest, CountersCountCallsJobsAndSamples) {
   EXPECT_EQ(metrics.at("ballpiston_limit_refusals_total{reason=\"TOO_MANY_POINTS\"}"), 1);
   EXPECT_EQ(metrics.at("ballpiston_principal_stored_jobs{principal=\"local\"}"), 3);
   EXPECT_GT(metrics.at("ballpiston_principal_stored_bytes{principal=\"local\"}"), 0);
-  EXPECT_EQ(metrics.at("ballpiston_jobs_ended_total{state=\"succeeded\"}"), 3);
   EXPECT_EQ(metrics.at("ballpiston_samples_computed_total"), 3 * 2 * 50 * kFakeSamplesPerBlock);
-  EXPECT_EQ(metrics.at("ballpiston_workers"), 2);
   EXPECT_GT(metrics.at("ballpiston_store_bytes"), 4096);
   EXPECT_EQ(metrics.at("ballpiston_store_failing"), 0);
   EXPECT_GT(metrics.at("ballpiston_processor_seconds_total"), 0);

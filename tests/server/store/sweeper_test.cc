@@ -7,81 +7,44 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr int64_t kMiB = 1 << 20;
+constexpr uintmax_t kMiB = 1 << 20;
 
 class SweeperTest : public testing::Test {
  protected:
-  std::unique_ptr<Store> Open() {
-    return *Store::Open(path_, {.stall = kUnreachedLimit, .readers = 1, .reserve_bytes = 0});
-  }
-  int64_t FileBytes() const { return static_cast<int64_t>(std::filesystem::file_size(path_)); }
-
-  // 20 MB of details.
-  static int64_t AddLargeJob(Store& store, const std::string& id) {
-    JobRecord record;
-    record.id = id;
-    constexpr int32_t kPoints = 1000;
-    record.job.mutable_progress()->set_points(kPoints);
-    EXPECT_OK(store.Commit([&](Database& database) { InsertJob(database, record); }));
-    for (int64_t point = 0; point < kPoints; ++point) {
-      store.RecordResult(record.sequence,
-                         {.point = point, .result = "r", .details = std::string(20'000, 'd')});
-    }
-    EXPECT_OK(store.Flush());
-    EXPECT_OK(store.Commit([&](Database& database) {
-      JobEnd end;
-      end.numbers.points_done = kPoints;
-      EndJob(database, record.sequence, end);
-    }));
-    return record.sequence;
-  }
-
-  static void Delete(Store& store, int64_t job) {
-    ASSERT_OK(store.CommitDeletion([=](Database& database) { DeleteJob(database, job); }));
-  }
-
-  static int64_t Count(Store& store, const std::string& table) {
-    return ReadFrom(store, [&](Database& database) {
-      return database.Integer("SELECT count(*) FROM " + table);
-    });
+  // A store in which job 7 is dropped, with so many results of so many bytes.
+  std::unique_ptr<Database> WithDroppedJob(int rows, int bytes) const {
+    auto database = *OpenStoreFile(path_);
+    database->Execute(
+        absl::StrCat("WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n WHERE i < ",
+                     rows - 1, ") INSERT INTO results SELECT 7, i, 1, i, 0, x'', zeroblob(", bytes,
+                     "), x'' FROM n;", "INSERT INTO dropped (job) VALUES (7)"));
+    EXPECT_OK(database->status());
+    return database;
   }
 
   const TemporaryFolder folder_;
   const std::string path_ = folder_.File("store.sqlite3");
 };
 
-TEST_F(SweeperTest, TheFileShrinksWhenAJobIsDeleted) {
-  const auto store = Open();
-  const int64_t first = AddLargeJob(*store, "a");
-  AddLargeJob(*store, "b");
-  Delete(*store, first);
-  AwaitThat([this] { return FileBytes() <= 23 * kMiB; });  // 5 pages a point, and 256 free ones
-  EXPECT_EQ(Count(*store, "results"), 1000);
-  EXPECT_GT(FileBytes(), 20 * kMiB);  // those of "b"
-}
-
-TEST_F(SweeperTest, ARestartGoesOnWithTheRest) {
-  {
-    const auto database = *OpenStoreFile(path_);
-    database->Execute(
-        "INSERT INTO dropped (job) VALUES (7);"
-        "INSERT INTO results VALUES (7, 3, 1, 1, 0, x'00', x'', x''),"
-        " (8, 3, 1, 1, 0, x'00', x'', x'')");
-    ASSERT_OK(database->status());
-  }
-  const auto store = Open();
+TEST_F(SweeperTest, ARestartGoesOnWithTheRestAndTheFileShrinks) {
+  WithDroppedJob(1000, 20'000)
+      ->Execute("INSERT INTO results VALUES (8, 3, 1, 1, 0, x'00', x'', x'')");
+  ASSERT_GT(std::filesystem::file_size(path_), 19 * kMiB);  // 5 pages a result
+  const auto store = *Store::Open(path_, {.stall = kUnreachedLimit, .reserve_bytes = 0});
   ASSERT_OK(store->Flush());
-  AwaitThat([&] { return Count(*store, "dropped") == 0; });
-  EXPECT_EQ(Count(*store, "results"), 1);
+  AwaitThat([this] { return std::filesystem::file_size(path_) <= 3 * kMiB; });  // 256 free pages
+  const auto count = [&](const std::string& table) {
+    return ReadFrom(*store, [&](Database& database) {
+      return database.Integer("SELECT count(*) FROM " + table);
+    });
+  };
+  EXPECT_EQ(count("dropped"), 0);
+  EXPECT_EQ(count("results"), 1);
 }
 
 // Another write need not wait for many rows.
 TEST_F(SweeperTest, AStepRemovesFewRows) {
-  const auto database = *OpenStoreFile(path_);
-  database->Execute(
-      "WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n"
-      " WHERE i < 9999) INSERT INTO results SELECT 7, i, 1, i, 0, x'', zeroblob(300), x'' FROM n;"
-      "INSERT INTO dropped (job) VALUES (7)");
+  const auto database = WithDroppedJob(10'000, 300);
   const auto rows = [&] { return database->Integer("SELECT count(*) FROM results"); };
   ASSERT_TRUE(SweepStep(*database));
   EXPECT_EQ(rows(), 10'000 - kSweptRows);

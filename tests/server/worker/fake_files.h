@@ -31,6 +31,12 @@ class FakeFiles : public SharedFiles {
   // Called before each operation; if its result is not OK, the operation fails with it.
   std::function<absl::Status(const char* operation, const std::string& path)>& before =
       folder_->before;
+  // Sets `before` for the operations of this name only.
+  void Before(const std::string& operation, const std::function<absl::Status()>& call) {
+    before = [operation, call](const std::string& begun, const std::string&) {
+      return begun == operation ? call() : absl::OkStatus();
+    };
+  }
 
   absl::StatusOr<std::vector<std::string>> List(const std::string& subfolder) override {
     const absl::Status begun = Begin("list", subfolder);

@@ -1,5 +1,4 @@
 // A lease on its way to a worker and back: its file and its record.
-#include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
@@ -37,18 +36,6 @@ TEST(LeaseFile, NamesSayWhoseTheFileIs) {
   for (const char* other : {"", "a", ".a", "a.", "a.b.finished"}) {
     EXPECT_FALSE(ParseTaken(other)) << other;
   }
-}
-
-TEST(LeaseFile, TheChunksFollowTheLease) {
-  const Lease lease = LeaseOf(SpecOf(kMarkovProperty, Model::kBilliard));
-  const LeaseReport report = {.chunks = ComputedChunks(lease), .seconds = 0.1};
-  const std::string file = BytesOf(RecordOf(lease)) + BytesOf(report);
-  absl::string_view rest = file;
-  EXPECT_OK(TakeLease(rest));
-  ASSERT_OK_AND_ASSIGN(const LeaseReport back, TakeReport(rest));
-  EXPECT_EQ(back.seconds, 0.1);
-  EXPECT_TRUE(AreEqual(back.chunks, report.chunks));
-  EXPECT_TRUE(rest.empty());
 }
 
 TEST(LeaseFile, DamageIsDataLoss) {
@@ -198,15 +185,6 @@ TEST(LeaseRecord, AnImpossibleQuestionIsDataLoss) {
     harms[i](record);
     EXPECT_THAT(LeaseOfRecord(record), IsDataLoss()) << i;
   }
-}
-
-TEST(LeaseRecord, AnotherEngineVersionIsRefusedWithBothVersions) {
-  storage::Lease record = GoodRecord();
-  record.set_engine_version("0.0.1");
-  record.clear_question();  // the other engine may have other questions
-  EXPECT_THAT(LeaseOfRecord(record),
-              StatusIs(absl::StatusCode::kUnimplemented,
-                       AllOf(HasSubstr("0.0.1"), HasSubstr(kEngineVersion))));
 }
 
 }  // namespace
