@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,6 +32,12 @@ inline double StatedOverMeasured(const EnsembleSpec& spec) {
   const double stated =
       ScatterOf(spec, PointAt(spec, 0)).error / std::sqrt(static_cast<double>(summary.samples));
   return stated * std::fabs(first.value) / first.standard_error.value();
+}
+
+inline std::vector<std::string> NamesOf(const PointSummary& summary) {
+  std::vector<std::string> names;
+  for (const Estimate& estimate : summary.estimates) names.push_back(estimate.name);
+  return names;
 }
 
 inline const Estimate& Named(std::string_view name, const std::vector<Estimate>& estimates) {

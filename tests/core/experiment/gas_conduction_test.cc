@@ -21,18 +21,12 @@ EnsembleSpec SpecBetween(double hot, double cold, const GasShape& shape = {.colu
   return SpecOf(&kGasConduction, point, {.samples = 1024}, model, 7);
 }
 
-std::vector<std::string> NamesOf(const PointSummary& summary) {
-  std::vector<std::string> names;
-  for (const Estimate& estimate : summary.estimates) names.push_back(estimate.name);
-  return names;
-}
-
 TEST(GasConduction, EstimatesFollowFromTheCurrent) {
   for (const GasShape& shape : {GasShape{3}, GasShape{3, 2, true}}) {
     const PointSummary summary = RunPoint(SpecBetween(3, 1, shape));
-    EXPECT_EQ(NamesOf(summary), (std::vector<std::string>{
-                                    "heat_current", "conductivity", "conductivity_ratio",
-                                    "exchange_rate", "temperature_ball", "temperature_piston"}));
+    EXPECT_THAT(NamesOf(summary),
+                ElementsAre("heat_current", "conductivity", "conductivity_ratio", "exchange_rate",
+                            "temperature_ball", "temperature_piston"));
     // J N sqrt(T)/[(2/3)(hot^(3/2) - cold^(3/2))] with N = 3, T = 2.
     const double per_current = 3 * std::sqrt(2.0) / (2.0 / 3 * (std::sqrt(27.0) - 1));
     const Estimate &current = summary.estimates[0], &conductivity = summary.estimates[1];
@@ -189,9 +183,8 @@ TEST(GasConduction, TheProfileOfALongGasHasSharedPlaces) {
 TEST(GasConduction, EqualTemperaturesCarryNoCurrent) {
   for (const Model model : kModelsThatSampleGases) {
     const PointSummary summary = RunPoint(SpecBetween(2, 2, {.columns = 3}, model));
-    EXPECT_EQ(NamesOf(summary),
-              (std::vector<std::string>{"heat_current", "exchange_rate", "temperature_ball",
-                                        "temperature_piston"}));
+    EXPECT_THAT(NamesOf(summary), ElementsAre("heat_current", "exchange_rate", "temperature_ball",
+                                              "temperature_piston"));
     // 3 models, 3 estimates and 7 places within 4.5 standard errors: one false alarm in 5,000
     // seeds.
     EXPECT_EQ(summary.estimates[0].exact, 0);

@@ -26,9 +26,7 @@ bool HasBallBeyondPiston(const GasGeometry& gas, const GasState& state) {
 
 // By definition: all positions are drawn again until no ball is beyond a piston.
 GasState DrawnAsAWhole(const GasGeometry& gas, CounterRandom& random) {
-  GasState state;
-  state.balls.resize(static_cast<size_t>(gas.balls()));
-  state.pistons.resize(static_cast<size_t>(gas.pistons()));
+  GasState state = AtRest(gas);
   do {
     for (GasBall& ball : state.balls) {
       do {

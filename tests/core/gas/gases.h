@@ -33,6 +33,14 @@ inline GasState GasInEquilibrium(const GasGeometry& geometry, double temperature
   return DrawGas(geometry, TemperatureProfile(temperature), random);
 }
 
+// All bodies in the middle of their places.
+inline GasState AtRest(const GasGeometry& geometry) {
+  GasState state;
+  state.balls.resize(static_cast<size_t>(geometry.balls()));
+  state.pistons.resize(static_cast<size_t>(geometry.pistons()));
+  return state;
+}
+
 // All positions and velocities, in the order of a tangent vector's components.
 inline std::vector<double> ComponentsOf(const GasState& state) {
   std::vector<double> components;

@@ -36,9 +36,7 @@ TEST(FixedStepGas, ABallThatHasPassedAPistonExchanges) {
   const GasGeometry geometry = GasOf(kPaperRho, 0.2, "3x3");
   for (const Direction direction :
        {Direction::kRight, Direction::kUp, Direction::kLeft, Direction::kDown}) {
-    GasState state;
-    state.balls.resize(9);
-    state.pistons.resize(18);
+    GasState state = AtRest(geometry);
     const double sign = SignOf(direction);
     const int64_t piston = geometry.PistonOf(4, direction);
     state.balls[4] = {.position = SeenFrom(direction, {0.1, 0}),
