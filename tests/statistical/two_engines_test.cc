@@ -5,7 +5,7 @@
 #include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
-#include "tests/oracle/two_sample.h"
+#include "tests/oracle/samples.h"
 #include "tests/support/nightly.h"
 
 namespace ballpiston {

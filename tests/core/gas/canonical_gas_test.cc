@@ -2,8 +2,7 @@
 
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
-#include "tests/oracle/one_sample.h"
-#include "tests/oracle/two_sample.h"
+#include "tests/oracle/samples.h"
 
 namespace ballpiston {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/gas/jump_draws.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
-#include "tests/oracle/one_sample.h"
+#include "tests/oracle/samples.h"
 
 namespace ballpiston {
 namespace {

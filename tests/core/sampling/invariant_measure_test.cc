@@ -2,7 +2,7 @@
 
 #include "core/closed_form/pair_measures.h"
 #include "tests/core/preamble.h"
-#include "tests/oracle/one_sample.h"
+#include "tests/oracle/samples.h"
 
 namespace ballpiston {
 namespace {
