@@ -5,10 +5,11 @@
 // The true value is the exact one, or that of all runs together. A distance between laws has a mean
 // that depends on the number of samples, so it is compared with the mean of the runs. `make test`
 // has few runs of some estimates; with BALLPISTON_NIGHTLY=1 it prints a table of all.
+#include <boost/math/distributions/students_t.hpp>
+
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
-#include "tests/oracle/student.h"
 #include "tests/support/nightly.h"
 
 namespace ballpiston {
@@ -32,7 +33,8 @@ struct Runs {
   double Covered() const {
     double covered = 0;
     for (const Measured& run : with_error) {
-      const double t = StudentQuantile(run.freedom, kProbability);
+      const boost::math::students_t law(run.freedom);
+      const double t = boost::math::quantile(law, (1 + kProbability) / 2);
       covered += std::fabs(run.value - expected) <= t * run.standard_error;
     }
     return covered / static_cast<double>(with_error.size());

@@ -6,6 +6,17 @@
 namespace ballpiston {
 namespace {
 
+// From cusps over the paper's cell to a nearly vanished one, from the deepest piston to a rare one.
+std::vector<PairGeometry> GeometriesOfFlows() {
+  std::vector<PairGeometry> geometries;
+  for (const double rho : {0.5 + 1e-9, 0.5 + 1e-4, 0.501, kPaperRho, 0.6, 0.7, 0.7071}) {
+    for (const double share : {1.0, 0.3, 1e-2, 1e-5}) {
+      geometries.push_back(GeometryAtShare(rho, share));
+    }
+  }
+  return geometries;
+}
+
 PairState StartInEquilibrium(const PairGeometry& geometry, uint64_t sample) {
   CounterRandom random(17, 0, sample);
   return DrawFromFlowMeasure(geometry, random);

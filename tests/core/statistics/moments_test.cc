@@ -5,7 +5,6 @@
 #include "core/statistics/histogram.h"
 #include "core/statistics/stated_error.h"
 #include "tests/core/preamble.h"
-#include "tests/oracle/student.h"
 
 namespace ballpiston {
 namespace {
