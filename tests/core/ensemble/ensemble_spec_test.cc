@@ -4,6 +4,7 @@
 
 #include "core/ensemble/point_experiment.h"
 #include "core/experiment/all_experiments.h"
+#include "core/model_choice/ladder.h"
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
 
@@ -18,9 +19,10 @@ EnsembleSpec At(const ExperimentKind* experiment, double rho, double delta) {
   return spec;
 }
 
+auto OfField(const std::string& field) { return Field(&FieldViolation::field, field); }
+
 auto Names(const std::string& field, const std::string& text) {
-  return AllOf(Field(&FieldViolation::field, field),
-               Field(&FieldViolation::description, HasSubstr(text)));
+  return AllOf(OfField(field), Field(&FieldViolation::description, HasSubstr(text)));
 }
 
 // ---- tables ----
@@ -336,6 +338,50 @@ TEST(EnsembleSpec, ThePermittedCollisionsAreThoseOfTheLargestNumberOfSamples) {
   spec.grid[kDelta] = {1e-10};
   spec.target = {.collisions = kMaxSamples};
   EXPECT_EQ(asked(0), static_cast<uint64_t>(kMaxSamples));
+}
+
+// ---- a grid whose points stand in a table ----
+
+EnsembleSpec TableOf(const std::vector<double>& rho, const std::vector<double>& delta) {
+  EnsembleSpec spec = Asked("first-hit epsilon=0.125,0.25 samples=100");
+  spec.grid[kRho] = rho;
+  spec.grid[kDelta] = delta;
+  spec.grid.MakeColumn(kRho);
+  spec.grid.MakeColumn(kDelta);
+  return spec;
+}
+
+TEST(TableOfPoints, IsMultipliedByTheOtherListsAndVariesSlowest) {
+  const EnsembleSpec spec = TableOf({0.53, 0.6, 0.55}, {0.2, 0.05, 0.1});
+  ASSERT_THAT(Violations(spec), IsEmpty());
+  ASSERT_EQ(PointCount(spec), 6u);
+  EXPECT_EQ(PointAt(spec, 1),
+            (PointParameters{{kRho, 0.53}, {kDelta, 0.2}, {kEpsilon, 0.25}, {kExponent, 1}}));
+  EXPECT_EQ(PointAt(spec, 4),
+            (PointParameters{{kRho, 0.55}, {kDelta, 0.1}, {kEpsilon, 0.125}, {kExponent, 1}}));
+}
+
+// delta = 0.3 is permitted beside rho = 0.53, but not beside 0.6.
+TEST(TableOfPoints, AValueIsCheckedBesideThoseOfItsRow) {
+  EXPECT_THAT(Violations(TableOf({0.53, 0.6}, {0.3, 0.05})), IsEmpty());
+  EXPECT_THAT(Violations(TableOf({0.53, 0.6}, {0.05, 0.3})), ElementsAre(OfField("grid.delta[1]")));
+}
+
+TEST(TableOfPoints, HotIsComparedWithTheColdOfItsRow) {
+  EnsembleSpec spec = Asked("gas-conduction rho=0.53 hot=1,3 cold=0.5,2");
+  EXPECT_THAT(Violations(spec), ElementsAre(OfField("grid.hot[0]")));
+  spec.grid.MakeColumn(kHot);
+  spec.grid.MakeColumn(kCold);
+  EXPECT_THAT(Violations(spec), IsEmpty());
+  spec.grid[kHot] = {1, 2};
+  spec.target = {.tolerance = 0.1};
+  EXPECT_THAT(AnswerViolations(spec), ElementsAre(OfField("target.tolerance")));
+}
+
+TEST(TableOfPoints, ColumnsAreEquallyLong) {
+  EXPECT_THAT(Violations(TableOf({0.53, 0.6}, {0.05})), ElementsAre(OfField("grid.delta")));
+  EXPECT_THAT(Violations(TableOf({}, {0.05})), Contains(OfField("grid.rho")));
+  EXPECT_THAT(Violations(TableOf({}, {})), Contains(OfField("grid.rho")));
 }
 
 }  // namespace
