@@ -201,13 +201,17 @@ TEST(GasConduction, EqualTemperaturesCarryNoCurrent) {
 
 // ---- times ----
 
+// In halves of the relaxation time.
+uint64_t WarmUpOf(const EnsembleSpec& spec) {
+  return ForecastOf(spec, PointAt(spec, 0)).trajectories->warm_up;
+}
+
 // Exchanges of a contact in the warm-up. A longer gas has shorter stretches, but more of them.
 double ExchangesOfAWarmUp(const EnsembleSpec& spec) {
   const PointParameters point = PointAt(spec, 0);
   const GasShape shape = ShapeOf(point[kCells]);
-  const Forecast forecast = ForecastOf(spec, point);
-  return forecast.collisions / static_cast<double>(shape.contacts()) *
-         static_cast<double>(forecast.trajectories->warm_up);
+  return ForecastOf(spec, point).collisions / static_cast<double>(shape.contacts()) *
+         static_cast<double>(WarmUpOf(spec));
 }
 
 // The warm-up grows with the square of the length, and with the time of a slow piston: the current
@@ -217,8 +221,7 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
   const auto of_length = [](int64_t columns) {
     return ExchangesOfAWarmUp(SpecBetween(3, 1, {.columns = columns}));
   };
-  const PointParameters short_gas = PointAt(SpecBetween(3, 1), 0);
-  EXPECT_EQ(kGasConduction.forecast(Model::kBilliard, short_gas).trajectories->warm_up, 2u);
+  EXPECT_EQ(WarmUpOf(SpecBetween(3, 1)), 2u);
   EXPECT_NEAR(of_length(19) / of_length(9), 4, 1e-12);
   EXPECT_NEAR(of_length(1'600) / of_length(299), std::pow(1'601. / 300, 2), 1e-8);
   const auto at_cold = [](Model model, double cold) {
@@ -240,17 +243,13 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
 // In 80 first answers of 1x225 cells of the billiard between 1 and 0.15, after one relaxation time,
 // the mean z-score of the pistons' temperature was 0.9 +- 0.1.
 TEST(GasConduction, BesideAColdReservoirABilliardWarmsUpLonger) {
-  const auto halves = [](Model model, double cold) {
-    return kGasConduction.forecast(model, PointAt(SpecBetween(1, cold), 0)).trajectories->warm_up;
-  };
-  for (const Model model : kModelsThatSampleGases) {
-    const bool is_billiard = model != Model::kMarkov;
-    EXPECT_EQ(halves(model, 1), 2u);
-    EXPECT_EQ(halves(model, 0.34), 2u);
-    EXPECT_EQ(halves(model, 0.15), is_billiard ? 4u : 2u);
-    EXPECT_EQ(halves(model, 0.14), is_billiard ? 8u : 2u);
-    EXPECT_EQ(halves(model, 0.01), is_billiard ? 16u : 2u);
-    EXPECT_EQ(halves(model, 1e-8), is_billiard ? 16u : 2u);
+  for (const auto& [cold, of_billiard] :
+       {std::pair(1.0, 2u), {0.34, 2u}, {0.15, 4u}, {0.14, 8u}, {0.01, 16u}, {1e-8, 16u}}) {
+    for (const Model model : kModelsThatSampleGases) {
+      EXPECT_EQ(WarmUpOf(SpecBetween(1, cold, {.columns = 3}, model)),
+                model == Model::kMarkov ? 2u : of_billiard)
+          << cold;
+    }
   }
 }
 
@@ -270,16 +269,10 @@ TEST(GasConduction, TheStatesOfALargeGasFitIntoTheStore) {
 // In 30 first answers of 1x2000 cells of the jump process between 1 and 0.2, after one relaxation
 // time, the mean z-score of the pistons' temperature was 0.9 +- 0.2.
 TEST(GasConduction, ALargeGasWarmsUpLonger) {
-  const auto halves = [](int64_t rows) {
-    const EnsembleSpec spec = SpecBetween(1, 0.2, {1, rows, true}, Model::kMarkov);
-    return ForecastOf(spec, PointAt(spec, 0)).trajectories->warm_up;
-  };
-  EXPECT_EQ(halves(225), 2u);
-  EXPECT_EQ(halves(226), 4u);
-  EXPECT_EQ(halves(1'662), 4u);
-  EXPECT_EQ(halves(1'663), 8u);
-  EXPECT_EQ(halves(90'771), 8u);
-  EXPECT_EQ(halves(90'772), 16u);
+  for (const auto& [rows, halves] :
+       {std::pair(225, 2u), {226, 4u}, {1'662, 4u}, {1'663, 8u}, {90'771, 8u}, {90'772, 16u}}) {
+    EXPECT_EQ(WarmUpOf(SpecBetween(1, 0.2, {1, rows, true}, Model::kMarkov)), halves) << rows;
+  }
 }
 
 // The rate of exchanges in long runs is 0.06340(1). After a warm-up of one relaxation time it was
