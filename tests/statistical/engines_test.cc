@@ -202,11 +202,10 @@ struct Point {
   double events = HUGE_VAL;  // that each engine may take, about
 };
 
-uint64_t MostSamples() { return IsNightly() ? 400'000 : 100'000; }
-
 int64_t SamplesAt(const Point& point, const PairGeometry& geometry) {
+  const double most = IsNightly() ? 400'000 : 100'000;
   const double affordable = point.events / HitsPerReturn(geometry, point.epsilon).Events();
-  return static_cast<int64_t>(std::clamp(affordable, 1000.0, static_cast<double>(MostSamples())));
+  return static_cast<int64_t>(std::clamp(affordable, 1000.0, most));
 }
 
 // The seed is the model's, so that the two samples are independent.

@@ -17,11 +17,6 @@ std::vector<PairGeometry> GeometriesOfFlows() {
   return geometries;
 }
 
-PairState StartInEquilibrium(const PairGeometry& geometry, uint64_t sample) {
-  CounterRandom random(17, 0, sample);
-  return DrawFromFlowMeasure(geometry, random);
-}
-
 // The depth inside a disc to which rounding may put a ball: an ulp of its position in a cell, some
 // more where two discs are nearly tangent (2.1e-15 observed at rho = 0.5001, aiming exactly at a
 // tip). An orbit that leaves through a tip is outside by 1e-3 or more a few events later.
@@ -40,7 +35,8 @@ TEST(ReferenceFlow, OrbitsKeepTheirEnergyAndStayBetweenWallsAndPiston) {
   for (const PairGeometry& geometry : GeometriesOfFlows()) {
     SCOPED_TRACE(absl::StrCat("rho ", geometry.rho(), " delta ", geometry.delta()));
     for (const uint64_t sample : {1, 2}) {
-      ReferenceFlow flow(geometry, StartInEquilibrium(geometry, sample));
+      CounterRandom random(17, 0, sample);
+      ReferenceFlow flow(geometry, DrawFromFlowMeasure(geometry, random));
       int standing = 0;
       for (int i = 0; i < 100'000; ++i) {
         const Event event = StepAndExchange(flow);

@@ -112,10 +112,6 @@ const Generator& InUse() {
   return *generator;
 }
 
-Eigen::VectorXd EnergyOf(const Generator& generator) {
-  return generator.Coefficients([](double u) { return u * u / 2; });
-}
-
 // (L g)(u) by quadrature: with u' = s sin(phi) the kernel is max(u, u')/(sqrt(2) pi). Cut where the
 // maximum changes sides, and graded to where g has its singularities.
 double ApplyL(const std::function<double(double)>& g, double u) {
@@ -160,7 +156,7 @@ TEST(Generator, ConservesProbability) {
 // The expansion's dE[ep(t)]/dt is equal to L applied to E[ep(t)] by quadrature: the backward
 // equation, from time 0 to times at which only the gap's function remains.
 TEST(Generator, EvolutionObeysTheMasterEquation) {
-  const Eigen::VectorXd energy = EnergyOf(InUse());
+  const Eigen::VectorXd energy = InUse().Coefficients([](double u) { return u * u / 2; });
   for (const double t : {0.0, 1.0, 5.0, 20.0, 60.0}) {
     const Eigen::VectorXd decayed =
         energy.cwiseProduct((-InUse().rates() * t).array().exp().matrix());
