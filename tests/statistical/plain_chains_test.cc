@@ -125,11 +125,6 @@ void Compare(const PointSummary& product, const PlainResult& plain, Comparison& 
   }
 }
 
-double DensityOf(const PointParameters& point) {
-  const GasGeometry gas = GasGeometryOf(point, GasEnds::kReservoirs);
-  return std::sqrt(std::numbers::pi) * InfiniteGasExchangeRate(gas, 1);
-}
-
 // By the number of cells, N. Chains that take minutes run nightly.
 class PlainChains : public testing::TestWithParam<int64_t> {};
 
@@ -145,10 +140,12 @@ TEST_P(PlainChains, TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram) {
   if (GetParam() > 4 && !IsNightly()) GTEST_SKIP() << "a nightly test";
   const auto cells = static_cast<size_t>(GetParam());
   const PointParameters point = PaperGas(&kGasConduction, 0.2, GasShape{GetParam()});
+  const GasGeometry gas = GasGeometryOf(point, GasEnds::kReservoirs);
+  const double density = std::sqrt(std::numbers::pi) * InfiniteGasExchangeRate(gas, 1);
   const int64_t samples = GetParam() == 1 ? 1'049'000 : 264'000;
   Comparison comparison;
   Compare(RunPoint(SpecOf(&kGasConduction, point, {.samples = samples}, Model::kMarkov, 3)),
-          PlainRuns(cells, DensityOf(point)), comparison);
+          PlainRuns(cells, density), comparison);
   EXPECT_LT(comparison.MeanSquare(), 3.5);
 }
 

@@ -6,9 +6,6 @@
 namespace ballpiston::method_comparison {
 namespace {
 
-using ::testing::EndsWith;
-using ::testing::StartsWith;
-
 ProcessResult RunComparison(std::vector<std::string> flags) {
   flags.insert(flags.begin(), BuildPath("bin/method_comparison"));
   return RunProgram({.command = std::move(flags)});
