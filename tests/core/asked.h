@@ -8,14 +8,8 @@
 // estimate, model, seed, precision=single and verify=yes. Another name fails the test.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_split.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 

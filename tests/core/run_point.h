@@ -1,16 +1,10 @@
 // Runs a whole point, as the server does.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 

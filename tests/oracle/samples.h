@@ -3,12 +3,7 @@
 // other.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
+#include "tests/support/preamble.h"
 
 namespace ballpiston::oracle {
 

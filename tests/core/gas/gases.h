@@ -1,16 +1,11 @@
 // Gases for tests. Their parameters must be valid.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
-#include "absl/strings/string_view.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_shape.h"
 #include "core/gas/gas_state.h"
-#include "core/sampling/counter_random.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 
