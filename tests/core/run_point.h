@@ -8,8 +8,8 @@
 
 namespace ballpiston {
 
-inline PointSummary RunPoint(const EnsembleSpec& spec, size_t index = 0) {
-  const auto point = PointExperiment::Create(spec, index);
+inline PointSummary RunPoint(const EnsembleSpec& spec) {
+  const auto point = PointExperiment::Create(spec, 0);
   return point->Summarize(FoldPoint(*point));
 }
 

@@ -3,7 +3,6 @@
 #include "core/gas/gas_shape.h"
 #include "core/geometry/temperature.h"
 #include "tests/core/preamble.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston {
 namespace {

@@ -1,7 +1,6 @@
 // The experiment `gas-conduction`: estimates, profile, fluctuations, times.
 #include <ctime>
 
-#include "absl/strings/str_cat.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/steady_gas.h"
 #include "core/gas/gas_exchange_rate.h"

@@ -1,6 +1,5 @@
 // The program as a process, with the smallest budget.
 #include "tests/core/preamble.h"
-#include "tests/support/paths.h"
 #include "tests/support/process.h"
 
 namespace ballpiston::method_comparison {
