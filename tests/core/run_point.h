@@ -1,9 +1,10 @@
-// Runs a whole point, as the server does.
+// Runs a whole point, as the server does. Also has the headers of points and of their questions.
 #pragma once
 
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
+#include "tests/core/one_point_spec.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston {

@@ -5,7 +5,6 @@
 #include "core/experiment/energy_relaxation.h"
 
 #include "core/closed_form/mean_free_time.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/support/nightly.h"

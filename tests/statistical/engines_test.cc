@@ -2,7 +2,6 @@
 // independent program, and the engines with each other.
 #include "core/billiard/billiard_domain.h"
 #include "core/experiment/expected_returns.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/oracle/samples.h"

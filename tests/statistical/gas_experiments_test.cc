@@ -1,7 +1,6 @@
 // Long runs of gases: stated errors and measured errors, the conductivity and the spectrum; in
 // equilibrium the rate of exchanges, the laws of the energies, and the conservation of the energy.
 // plain_chains_test.cc compares the current.
-#include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_run.h"

@@ -1,6 +1,5 @@
 // The Markov property of the billiard's energy exchanges, and the deviations from it at larger
 // delta: every estimate of the experiment at delta = 0.3, 0.2, 0.1, 0.05.
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/support/nightly.h"

@@ -1,10 +1,8 @@
 // Compares gas-conduction by the jump process with a plain program that shares no physics with
 // core/ (tests/oracle/plain_jump_chain.h): the current, its cumulants, the exchange rate and the
 // temperatures.
-#include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/oracle/plain_jump_chain.h"

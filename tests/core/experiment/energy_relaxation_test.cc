@@ -2,10 +2,8 @@
 
 #include "core/billiard/event_flow.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/ensemble/point_fold.h"
 #include "core/ensemble/random_stream.h"
 #include "core/sampling/invariant_measure.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 

@@ -1,11 +1,9 @@
 // The experiment `gas-conduction`: estimates, profile, fluctuations, times.
 #include <ctime>
 
-#include "core/ensemble/experiment_kind.h"
 #include "core/experiment/steady_gas.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/geometry/temperature.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 

@@ -1,9 +1,7 @@
 // The experiment `gas-equilibrium`: estimates, exact values, laws of speeds.
 #include "core/conductivity/conductivity.h"
-#include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 

@@ -1,5 +1,4 @@
 // The experiments `lyapunov` and `gas-lyapunov`.
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 

@@ -2,7 +2,6 @@
 #include "core/closed_form/kernel.h"
 #include "core/experiment/markov_property_statistics.h"
 #include "core/statistics/group_scatter.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 

@@ -3,7 +3,6 @@
 #include "core/billiard/orbits.h"
 #include "core/experiment/expected_returns.h"
 #include "tests/core/billiard/recorded_collisions.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tools/flows/numbered_orbits.h"

@@ -1,6 +1,5 @@
 // Which estimates have a standard error, and what stands in its place.
 #include "core/closed_form/ingoing_law.h"
-#include "core/ensemble/point_fold.h"
 #include "core/experiment/expected_returns.h"
 #include "core/experiment/returns.h"
 #include "tests/core/asked.h"
