@@ -80,4 +80,17 @@ inline EnsembleSpec Asked(const std::string& question) {
   return spec;
 }
 
+// Matchers of a violation: of this field, and with these parts of its description.
+inline auto OfField(const std::string& field) { return Field(&FieldViolation::field, field); }
+
+template <typename... Parts>
+auto Saying(const Parts&... parts) {
+  return Field(&FieldViolation::description, AllOf(HasSubstr(parts)...));
+}
+
+template <typename... Parts>
+auto Names(const std::string& field, const Parts&... parts) {
+  return AllOf(OfField(field), Saying(parts...));
+}
+
 }  // namespace ballpiston

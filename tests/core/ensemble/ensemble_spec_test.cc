@@ -19,12 +19,6 @@ EnsembleSpec At(const ExperimentKind* experiment, double rho, double delta) {
   return spec;
 }
 
-auto OfField(const std::string& field) { return Field(&FieldViolation::field, field); }
-
-auto Names(const std::string& field, const std::string& text) {
-  return AllOf(OfField(field), Field(&FieldViolation::description, HasSubstr(text)));
-}
-
 // ---- tables ----
 
 struct Row {

@@ -1,4 +1,5 @@
 // The experiments `lyapunov` and `gas-lyapunov`.
+#include "tests/core/asked.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 
@@ -151,8 +152,7 @@ TEST(GasLyapunov, TheExponentsThatRoundingChangesHaveNoErrors) {
 TEST(GasLyapunov, AtMost32Cells) {
   EnsembleSpec spec = GasAskedAt({33, 1, false}, 0.5, 1, 60);
   EXPECT_THAT(Violations(spec),
-              Contains(Field(&FieldViolation::description,
-                             HasSubstr("is 33; permitted for gas-lyapunov: 1 to 32 cells"))));
+              Contains(Saying("is 33; permitted for gas-lyapunov: 1 to 32 cells")));
 }
 
 }  // namespace
