@@ -104,11 +104,8 @@ constexpr uint64_t kSamplesOfTheFourth = uint64_t{1} << 20;  // which its cumula
 
 void Compare(const PointSummary& product, const PlainResult& plain, Comparison& comparison) {
   const auto add = [&](const char* name, const Moments& moments) {
-    for (const Estimate& estimate : product.estimates) {
-      if (estimate.name != name) continue;
-      return comparison.Add(name, moments, estimate.value, estimate.standard_error);
-    }
-    ADD_FAILURE() << "no estimate " << name;
+    const Estimate& estimate = Named(name, product.estimates);
+    comparison.Add(name, moments, estimate.value, estimate.standard_error);
   };
   add("heat_current", plain.current);
   add("charge_cumulant_2", plain.cumulants[0]);
