@@ -16,7 +16,7 @@
 // do not work: their large values at rare energies would dominate the scatter.
 //
 // Units: those of galerkin_form.h; temperature 1, neighbouring sites at distance 1. Test:
-// TestFunctionTest.HasItsBound.
+// TestFunction.HasItsBound.
 #pragma once
 
 #include <Eigen/Core>

@@ -26,7 +26,6 @@
 #include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
-#include "core/experiment/all_experiments.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_geometry.h"
@@ -34,6 +33,7 @@
 #include "core/gas/hit_rates.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/direction.h"
+#include "tests/core/one_point_spec.h"
 #include "tools/flows/lane_balls.h"
 #include "tools/flows/paper.h"
 
@@ -175,18 +175,11 @@ double ScalarHits(uint64_t turn) {
 using Point = std::shared_ptr<const PointExperiment>;
 
 Point PairPoint(const ExperimentKind* experiment, double delta, Model model, Precision precision) {
-  EnsembleSpec spec = {.experiment = experiment,
-                       .grid = {{kRho, {kPaperRho}}, {kDelta, {delta}}},
-                       .seed = 5,
-                       .model = model,
-                       .precision = precision};
-  if (experiment == &kEquilibrium) {
-    spec.target.collisions = 100'000'000;
-  } else {
-    spec.grid[kEpsilon] = {0.125};
-    spec.target.samples = 10'000'000;
-  }
-  if (experiment == &kFirstHit) spec.grid[kExponent] = {1};
+  EnsembleSpec spec =
+      experiment == &kEquilibrium
+          ? SpecOf(experiment, PaperPoint(delta), {.collisions = 100'000'000}, model, 5)
+          : SpecOf(experiment, PaperPoint(delta, 0.125, 1), {.samples = 10'000'000}, model, 5);
+  spec.precision = precision;
   return PointExperiment::Create(spec, 0);
 }
 
@@ -227,24 +220,19 @@ void AddThreads() {
 
 void AddGas(const ExperimentKind* experiment, int64_t cells, double delta) {
   constexpr int64_t kBallsTogether = 192;  // as many as the lanes fly together
-  EnsembleSpec spec = {
-      .experiment = experiment,
-      .grid = {{kRho, {kPaperRho}}, {kDelta, {delta}}, {kCells, {CodeOf({cells})}}},
-      .seed = 5};
-  spec.target.samples = 1'000'000;
-  if (experiment == &kGasEquilibrium) spec.grid[kTemperature] = {1};
-  if (experiment == &kGasConduction) spec.grid[kHot] = {1.5}, spec.grid[kCold] = {0.5};
+  PointParameters point = PaperGas(experiment, delta, {cells});
+  if (experiment == &kGasEquilibrium) point.Set(kTemperature, 1);
   // A group's first stretches; or replicas, as many as fill the lanes of the plan's last chunk.
   const auto work = [&](Model model, int64_t balls) -> Work {
-    spec.model = model;
-    const Point point = PointExperiment::Create(spec, 0);
-    return [point, replicas = static_cast<uint64_t>(balls / cells)](uint64_t turn) {
-      const ChunkPlan& plan = point->plan();
+    const Point made =
+        PointExperiment::Create(SpecOf(experiment, point, {.samples = 1'000'000}, model, 5), 0);
+    return [made, replicas = static_cast<uint64_t>(balls / cells)](uint64_t turn) {
+      const ChunkPlan& plan = made->plan();
       const Block block =
           plan.groups() > 0
               ? plan.BlockAt(turn % plan.groups(), 0)
               : Block{.chunk = plan.chunks() - 1, .first = turn * replicas, .samples = replicas};
-      RunBlock(*point, block);
+      RunBlock(*made, block);
       return static_cast<double>(block.samples);
     };
   };

@@ -16,10 +16,9 @@
 
 #include "core/ensemble/block_orbits.h"
 #include "core/ensemble/point_fold.h"
-#include "core/experiment/all_experiments.h"
 #include "core/experiment/expected_returns.h"
 #include "core/gpu/device_orbits.h"
-#include "tools/flows/paper.h"
+#include "tests/core/one_point_spec.h"
 
 namespace ballpiston {
 namespace {
@@ -100,22 +99,16 @@ std::unique_ptr<OrbitsOnDevice> Open(unsigned runs) {
   });
 }
 
-EnsembleSpec Question(const ExperimentKind* experiment, double rho, double delta, double epsilon,
-                      double samples) {
-  EnsembleSpec spec = {.experiment = experiment,
-                       .grid = {{kRho, {rho}}, {kDelta, {delta}}},
-                       .seed = 5,
-                       .model = Model::kBilliard};
-  if (experiment == &kEquilibrium) {
-    spec.target.collisions = static_cast<int64_t>(samples);
-    return spec;
-  }
-  spec.target.samples = static_cast<int64_t>(samples);
+EnsembleSpec Question(const ExperimentKind* experiment, double rho, double delta, double samples) {
+  PointParameters point = {{kRho, rho}, {kDelta, delta}};
   if (experiment == &kFirstHit || experiment == &kConditionalMeanFreeTime) {
-    spec.grid[kEpsilon] = {epsilon};
+    point.Set(kEpsilon, kEpsilon0);
   }
-  if (experiment == &kFirstHit) spec.grid[kExponent] = {1};
-  return spec;
+  if (experiment == &kFirstHit) point.Set(kExponent, 1);
+  const auto count = static_cast<int64_t>(samples);
+  const Target target =
+      experiment == &kEquilibrium ? Target{.collisions = count} : Target{.samples = count};
+  return SpecOf(experiment, point, target, Model::kBilliard, 5);
 }
 
 // ---- questions ----
@@ -141,10 +134,9 @@ bool ShowBits() {
       const double delta = share * PairDeltaBound(rho);
       for (const ExperimentKind* kind : {&kEquilibrium, &kConditionalMeanFreeTime, &kFirstHit,
                                          &kMarkovProperty, &kEnergyRelaxation}) {
-        const auto some = PointExperiment::Create(Question(kind, rho, delta, kEpsilon0, 100), 0);
+        const auto some = PointExperiment::Create(Question(kind, rho, delta, 100), 0);
         const double samples = kEvents / some->plan().events_per_sample();
-        const auto experiment =
-            PointExperiment::Create(Question(kind, rho, delta, kEpsilon0, samples), 0);
+        const auto experiment = PointExperiment::Create(Question(kind, rho, delta, samples), 0);
         const Computed processor = Compute(*experiment, AllThreads(), nullptr);
         const Computed on_device = Compute(*experiment, AllThreads(), device.get());
         std::printf("rho %-8.4g delta %-8.3g ", rho, delta);
@@ -158,8 +150,8 @@ bool ShowBits() {
 bool ShowSpeed(double delta, double hits) {
   const PairGeometry geometry = PairGeometry::Create(kPaperRho, delta).value();
   const double hits_of_a_return = HitsPerReturn(geometry, kEpsilon0).ball_wall;
-  const auto experiment = PointExperiment::Create(
-      Question(&kFirstHit, kPaperRho, delta, kEpsilon0, hits / hits_of_a_return), 0);
+  const auto experiment =
+      PointExperiment::Create(Question(&kFirstHit, kPaperRho, delta, hits / hits_of_a_return), 0);
   const Computed processor = Compute(*experiment, AllThreads(), nullptr);
   const double exact = *experiment->FirstEstimate(processor.merged).exact;
   const double flown = processor.merged.moments[0].mean *

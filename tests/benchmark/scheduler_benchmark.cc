@@ -9,19 +9,7 @@
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
-#include <algorithm>
-#include <cstdint>
-#include <cstdlib>
-#include <fstream>
-#include <functional>
-#include <iostream>
-#include <memory>
-#include <optional>
 #include <queue>
-#include <random>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
@@ -31,7 +19,6 @@
 #include "server/store/store.h"
 #include "tests/server/factory_opener.h"
 #include "tests/support/process.h"
-#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {

@@ -8,14 +8,8 @@
 // estimate, model, seed, precision=single and verify=yes. Another name fails the test.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <string>
-#include <vector>
-
-#include "absl/strings/str_split.h"
 #include "tests/core/one_point_spec.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 
@@ -84,6 +78,19 @@ inline EnsembleSpec Asked(const std::string& question) {
     SetPart(spec, sides.at(0), sides.at(1));
   }
   return spec;
+}
+
+// Matchers of a violation: of this field, and with these parts of its description.
+inline auto OfField(const std::string& field) { return Field(&FieldViolation::field, field); }
+
+template <typename... Parts>
+auto Saying(const Parts&... parts) {
+  return Field(&FieldViolation::description, AllOf(HasSubstr(parts)...));
+}
+
+template <typename... Parts>
+auto Names(const std::string& field, const Parts&... parts) {
+  return AllOf(OfField(field), Saying(parts...));
 }
 
 }  // namespace ballpiston

@@ -1,20 +1,16 @@
-// Runs a whole point, as the server does.
+// Runs a whole point, as the server does. Also has the headers of points and of their questions.
 #pragma once
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string_view>
-#include <vector>
 
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
+#include "tests/core/one_point_spec.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 
-inline PointSummary RunPoint(const EnsembleSpec& spec, size_t index = 0) {
-  const auto point = PointExperiment::Create(spec, index);
+inline PointSummary RunPoint(const EnsembleSpec& spec) {
+  const auto point = PointExperiment::Create(spec, 0);
   return point->Summarize(FoldPoint(*point));
 }
 
@@ -31,6 +27,12 @@ inline double StatedOverMeasured(const EnsembleSpec& spec) {
   const double stated =
       ScatterOf(spec, PointAt(spec, 0)).error / std::sqrt(static_cast<double>(summary.samples));
   return stated * std::fabs(first.value) / first.standard_error.value();
+}
+
+inline std::vector<std::string> NamesOf(const PointSummary& summary) {
+  std::vector<std::string> names;
+  for (const Estimate& estimate : summary.estimates) names.push_back(estimate.name);
+  return names;
 }
 
 inline const Estimate& Named(std::string_view name, const std::vector<Estimate>& estimates) {

@@ -8,15 +8,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<FuzzTarget> AllTargets() {
-  std::vector<FuzzTarget> all;
-  for (const auto& some :
-       {RequestTargets(), StoredTargets(), ServerTextTargets(), ClientTargets()}) {
-    all.insert(all.end(), some.begin(), some.end());
-  }
-  return all;
-}
-
 std::string TextOf(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
@@ -36,8 +27,13 @@ std::string BytesSpelledBy(const fs::path& path, const google::protobuf::Message
 }  // namespace
 
 const std::vector<FuzzTarget>& Targets() {
-  static const auto* const targets = new std::vector<FuzzTarget>(AllTargets());
-  return *targets;
+  static std::vector<FuzzTarget> all;
+  if (!all.empty()) return all;
+  for (const auto& some :
+       {RequestTargets(), StoredTargets(), ServerTextTargets(), ClientTargets()}) {
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
 }
 
 const FuzzTarget& TargetOf(const std::string& name) {

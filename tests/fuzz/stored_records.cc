@@ -21,10 +21,11 @@ using Experiments = std::vector<std::unique_ptr<const PointExperiment>>;
 
 // At least one experiment for each shape of block. First hits: with both signs of the piston's
 // velocity, with one sign, and with a tolerance.
-Experiments OneOfEach() {
+const Experiments& KnownExperiments() {
   const Target samples = {.samples = 1000}, collisions = {.collisions = 1000};
   const GasShape chain = {.columns = 4};
-  Experiments experiments;
+  static Experiments experiments;
+  if (!experiments.empty()) return experiments;
   for (const EnsembleSpec& spec :
        {SpecOf(&kEquilibrium, PaperPoint(0.1), collisions),
         SpecOf(&kConditionalMeanFreeTime, PaperPoint(0.1, 0.125), samples),
@@ -38,11 +39,6 @@ Experiments OneOfEach() {
     experiments.push_back(PointExperiment::Create(spec, 0));
   }
   return experiments;
-}
-
-const Experiments& KnownExperiments() {
-  static const auto* const experiments = new Experiments(OneOfEach());
-  return *experiments;
 }
 
 void RequireResumed(const PointExperiment& experiment, const FoldState& state) {

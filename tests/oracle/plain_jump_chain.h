@@ -12,13 +12,7 @@
 // probability (v1 - v3)+/(b + |v3|).
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <numeric>
-#include <random>
-#include <vector>
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 

@@ -127,7 +127,7 @@ double Cold(Dice& dice, double hot, bool extreme) {
 // ---- defects ----
 
 // Makes the first value of the parameter one that lies outside of its domain. The ends of each
-// domain, to the last bit, are in tests/core/ensemble/parameter_test.cc and
+// domain, to the last bit, are in tests/core/ensemble/ensemble_spec_test.cc and
 // tests/core/geometry/pair_geometry_test.cc.
 void SetValueOutside(Dice& dice, const Parameter& parameter, double bound_of_delta,
                      v1::Grid& grid) {

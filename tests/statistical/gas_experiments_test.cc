@@ -1,7 +1,6 @@
 // Long runs of gases: stated errors and measured errors, the conductivity and the spectrum; in
 // equilibrium the rate of exchanges, the laws of the energies, and the conservation of the energy.
 // plain_chains_test.cc compares the current.
-#include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_run.h"
@@ -14,15 +13,6 @@
 
 namespace ballpiston {
 namespace {
-
-EnsembleSpec Equilibrium(double delta, const GasShape& shape, Model model, int64_t replicas) {
-  return SpecOf(&kGasEquilibrium, PaperGas(&kGasEquilibrium, delta, shape), {.samples = replicas},
-                model, 11);
-}
-
-GasGeometry GeometryAt(const EnsembleSpec& spec) {
-  return GasGeometryOf(PointAt(spec, 0), GasEnds::kPeriodic);
-}
 
 struct StatedError {
   const char* question;
@@ -83,11 +73,13 @@ INSTANTIATE_TEST_SUITE_P(OfGases, StatedErrors, testing::ValuesIn(kStatedErrors)
 TEST(GasExperiments, ConductivityOfTheJumpProcessMatchesTheSpectrum) {
   const int fewer = IsNightly() ? 1 : 4;
   for (const auto& [shape, replicas] : {std::pair(GasShape{16}, 10'000), {{8, 8, true}, 2000}}) {
-    const EnsembleSpec spec = Equilibrium(0.1, shape, Model::kMarkov, replicas / fewer);
-    const auto experiment = PointExperiment::Create(spec, 0);
+    const PointParameters point = PaperGas(&kGasEquilibrium, 0.1, shape);
+    const Target target = {.samples = replicas / fewer};
+    const auto experiment =
+        PointExperiment::Create(SpecOf(&kGasEquilibrium, point, target, Model::kMarkov, 11), 0);
     const BlockResult merged = FoldPoint(*experiment);
     const Estimate ratio = experiment->Summarize(merged).estimates.back();
-    const double of_static = GasExchangeRate(GeometryAt(spec), 1) / 2;
+    const double of_static = GasExchangeRate(GasGeometryOf(point, GasEnds::kPeriodic), 1) / 2;
     const double plain = merged.moments[0].mean / of_static;
     const double plain_error = *merged.moments[0].StandardError() / of_static;
     EXPECT_LT(std::fabs(ratio.value - *ratio.limit), 4 * *ratio.standard_error + 3e-6);

@@ -1,10 +1,8 @@
 // Compares gas-conduction by the jump process with a plain program that shares no physics with
 // core/ (tests/oracle/plain_jump_chain.h): the current, its cumulants, the exchange rate and the
 // temperatures.
-#include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 #include "tests/oracle/plain_jump_chain.h"
@@ -106,11 +104,8 @@ constexpr uint64_t kSamplesOfTheFourth = uint64_t{1} << 20;  // which its cumula
 
 void Compare(const PointSummary& product, const PlainResult& plain, Comparison& comparison) {
   const auto add = [&](const char* name, const Moments& moments) {
-    for (const Estimate& estimate : product.estimates) {
-      if (estimate.name != name) continue;
-      return comparison.Add(name, moments, estimate.value, estimate.standard_error);
-    }
-    ADD_FAILURE() << "no estimate " << name;
+    const Estimate& estimate = Named(name, product.estimates);
+    comparison.Add(name, moments, estimate.value, estimate.standard_error);
   };
   add("heat_current", plain.current);
   add("charge_cumulant_2", plain.cumulants[0]);
@@ -123,11 +118,6 @@ void Compare(const PointSummary& product, const PlainResult& plain, Comparison& 
     comparison.Add("temperature", plain.temperatures[i], profile[i + 1].value,
                    profile[i + 1].standard_error);
   }
-}
-
-double DensityOf(const PointParameters& point) {
-  const GasGeometry gas = GasGeometryOf(point, GasEnds::kReservoirs);
-  return std::sqrt(std::numbers::pi) * InfiniteGasExchangeRate(gas, 1);
 }
 
 // By the number of cells, N. Chains that take minutes run nightly.
@@ -145,10 +135,12 @@ TEST_P(PlainChains, TheJumpProcessBetweenReservoirsIsThatOfAPlainProgram) {
   if (GetParam() > 4 && !IsNightly()) GTEST_SKIP() << "a nightly test";
   const auto cells = static_cast<size_t>(GetParam());
   const PointParameters point = PaperGas(&kGasConduction, 0.2, GasShape{GetParam()});
+  const GasGeometry gas = GasGeometryOf(point, GasEnds::kReservoirs);
+  const double density = std::sqrt(std::numbers::pi) * InfiniteGasExchangeRate(gas, 1);
   const int64_t samples = GetParam() == 1 ? 1'049'000 : 264'000;
   Comparison comparison;
   Compare(RunPoint(SpecOf(&kGasConduction, point, {.samples = samples}, Model::kMarkov, 3)),
-          PlainRuns(cells, DensityOf(point)), comparison);
+          PlainRuns(cells, density), comparison);
   EXPECT_LT(comparison.MeanSquare(), 3.5);
 }
 

@@ -9,7 +9,14 @@ namespace {
 // Below $arrays is a folder for each array, NAME.NUMBER: the script, and for each task a file with
 // the number of its process and the time when the process began. The system gives the number of an
 // ended process to another one, perhaps to the server, which must not be killed.
-constexpr char kProcesses[] = R"sh(
+constexpr char kOfAllPrograms[] = R"sh(
+for word; do
+  case $word in
+    --job-name=* | --name=*) name=${word#*=} ;;
+    --array=0-*) last=${word#--array=0-} ;;
+    --wrap=*) script=${word#--wrap=} ;;
+  esac
+done
 born() { cut -d' ' -f22 "/proc/$1/stat" 2>/dev/null; }
 # Whether the process of the task's file lives; a zombie has no program. Sets $process.
 lives() {
@@ -19,13 +26,6 @@ lives() {
 )sh";
 
 constexpr char kSbatch[] = R"sh(
-for word; do
-  case $word in
-    --job-name=*) name=${word#--job-name=} ;;
-    --array=0-*) last=${word#--array=0-} ;;
-    --wrap=*) script=${word#--wrap=} ;;
-  esac
-done
 array=$arrays/$name.$$
 mkdir "$array" && echo "$script" >"$array/script" || exit 1
 for task in $(seq 0 "$last"); do
@@ -37,9 +37,6 @@ echo $$
 )sh";
 
 constexpr char kSqueue[] = R"sh(
-for word; do
-  case $word in --name=*) name=${word#--name=} ;; esac
-done
 for file in "$arrays/$name".*/task.*; do
   if lives "$file"; then echo "RUNNING|None"; fi
 done 2>/dev/null
@@ -47,9 +44,6 @@ exit 0
 )sh";
 
 constexpr char kScancel[] = R"sh(
-for word; do
-  case $word in --name=*) name=${word#--name=} ;; esac
-done
 for file in "$arrays"/$name.*/task.*; do
   if lives "$file"; then kill -KILL "$process"; fi
 done 2>/dev/null
@@ -64,7 +58,7 @@ StandInSlurm::StandInSlurm() {
   mkdir(folder_.File("programs").c_str(), 0700);
   const auto write = [&](const std::string& name, const char* script) {
     const std::string path = folder_.File("programs/" + name);
-    WriteFile(path, "#!/bin/sh\narrays='" + folder_.File("arrays") + "'" + kProcesses + script);
+    WriteFile(path, "#!/bin/sh\narrays='" + folder_.File("arrays") + "'" + kOfAllPrograms + script);
     chmod(path.c_str(), 0700);
   };
   write("sbatch", kSbatch);

@@ -1,11 +1,9 @@
 // Runs a test under every instruction set that this machine and the build support.
 #pragma once
 
-#include <gtest/gtest.h>
 #include <hwy/targets.h>
 
-#include <cstdint>
-#include <functional>
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 

@@ -1,29 +1,21 @@
 #include "core/billiard/longest_wait.h"
 
-#include "core/sampling/collision_surface.h"
-#include "core/sampling/outgoing_law.h"
+#include "core/experiment/returns.h"
 #include "tests/core/preamble.h"
 #include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
 
-// Returns to the collision surface at a piston's energy. Records the largest share of the longest
-// wait that an orbit has waited.
+// Returns at a piston's energy. Records the largest share of the longest wait that an orbit has
+// waited.
 class Returns : public NumberedOrbits {
  public:
   Returns(const PairGeometry& geometry, double epsilon)
-      : geometry_(geometry), longest_(geometry), epsilon_(epsilon), law_(epsilon, 1) {}
+      : starts_{geometry, epsilon, 1, {.seed = 5, .stream = 6}}, longest_(geometry) {}
 
   PairState Start(uint64_t orbit) override {
-    CounterRandom random(5, 6, orbit);
-    const Eigen::Vector2d ball = UniformOnCollisionSurface(geometry_, random);
-    const SignedDirection outgoing = law_.Draw(random);
-    const PairState state = {.position = ball,
-                             .direction = outgoing.ball,
-                             .ball_speed = std::sqrt(1 - 2 * epsilon_),
-                             .piston = ball.x(),
-                             .piston_velocity = outgoing.sigma * std::sqrt(2 * epsilon_)};
+    const PairState state = starts_.Draw(orbit);
     limits_.push_back(longest_.From(state));
     return state;
   }
@@ -36,10 +28,8 @@ class Returns : public NumberedOrbits {
   int lost() const { return lost_; }
 
  private:
-  PairGeometry geometry_;
+  ReturnStarts starts_;
   LongestWait longest_;
-  double epsilon_;
-  OutgoingLaw law_;
   std::vector<double> limits_;
   double share_ = 0;
   int lost_ = 0;

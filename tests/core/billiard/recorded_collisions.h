@@ -1,13 +1,8 @@
 // Orbits of a few collisions from equilibrium, and all collisions that they reported.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include "core/sampling/invariant_measure.h"
+#include "tests/core/preamble.h"
 #include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {

@@ -6,9 +6,15 @@
 namespace ballpiston {
 namespace {
 
-PairState StartInEquilibrium(const PairGeometry& geometry, uint64_t sample) {
-  CounterRandom random(17, 0, sample);
-  return DrawFromFlowMeasure(geometry, random);
+// From cusps over the paper's cell to a nearly vanished one, from the deepest piston to a rare one.
+std::vector<PairGeometry> GeometriesOfFlows() {
+  std::vector<PairGeometry> geometries;
+  for (const double rho : {0.5 + 1e-9, 0.5 + 1e-4, 0.501, kPaperRho, 0.6, 0.7, 0.7071}) {
+    for (const double share : {1.0, 0.3, 1e-2, 1e-5}) {
+      geometries.push_back(GeometryAtShare(rho, share));
+    }
+  }
+  return geometries;
 }
 
 // The depth inside a disc to which rounding may put a ball: an ulp of its position in a cell, some
@@ -29,7 +35,8 @@ TEST(ReferenceFlow, OrbitsKeepTheirEnergyAndStayBetweenWallsAndPiston) {
   for (const PairGeometry& geometry : GeometriesOfFlows()) {
     SCOPED_TRACE(absl::StrCat("rho ", geometry.rho(), " delta ", geometry.delta()));
     for (const uint64_t sample : {1, 2}) {
-      ReferenceFlow flow(geometry, StartInEquilibrium(geometry, sample));
+      CounterRandom random(17, 0, sample);
+      ReferenceFlow flow(geometry, DrawFromFlowMeasure(geometry, random));
       int standing = 0;
       for (int i = 0; i < 100'000; ++i) {
         const Event event = StepAndExchange(flow);

@@ -9,12 +9,15 @@ namespace {
 
 Quad Positive(Quad x) { return x > 0 ? x : Quad{0}; }
 
+Quad PairBall(double ep) { return Quad{1} / 2 - Quad{ep}; }
+
 // The first form of eq. kernel: the sum over the piston's signs before and after.
-Quad KernelOverSigns(Quad eb, Quad ep, Quad ep_out) {
+Quad KernelOverSigns(double ep, Quad ep_out) {
+  const Quad eb = PairBall(ep);
   if (ep_out >= eb) return 0;
   Quad sum = 0;
   for (int before : {1, -1}) {
-    for (int after : {1, -1}) sum += Positive(after * sqrt(ep_out) - before * sqrt(ep));
+    for (int after : {1, -1}) sum += Positive(after * sqrt(ep_out) - before * sqrt(Quad{ep}));
   }
   return sum / (4 * QuadPi() * sqrt(ep_out) * sqrt(eb - ep_out));
 }
@@ -27,8 +30,7 @@ TEST(Kernel, AccurateAtRandomEnergies) {
     const double small = 0.5 * std::pow(10, exponent(random));
     const double ep = i % 2 == 0 ? small : 0.5 - small;
     const double out = 0.5 * unit(random);
-    EXPECT_LE(RelativeError(PairKernel(ep, out), KernelOverSigns(Quad{1} / 2 - Quad{ep}, ep, out)),
-              kKernelRelativeError);
+    EXPECT_LE(RelativeError(PairKernel(ep, out), KernelOverSigns(ep, out)), kKernelRelativeError);
   }
 }
 
@@ -42,15 +44,14 @@ TEST(Kernel, AccurateWhereTheBallKeepsLittleEnergy) {
     const double ep =
         i % 3 == 0 ? 0.25 - 0.25 * std::pow(10, exponent(random)) : 0.5 * unit(random);
     const double out = (0.5 - ep) * (1 - std::pow(10, exponent(random)));
-    const Quad exact = KernelOverSigns(Quad{1} / 2 - Quad{ep}, ep, out);
+    const Quad exact = KernelOverSigns(ep, out);
     EXPECT_LE(RelativeError(PairKernel(ep, out), exact), kKernelRelativeError) << ep << " " << out;
     const double printed = KernelAsPrinted(0.5 - ep, ep, out, M_PI);
     worst_printed = std::max(worst_printed, RelativeError(printed, exact));
   }
   EXPECT_GT(worst_printed, 1e-3);  // the printed formula fails at these points
   const double below = std::nextafter(0.25, 0.0);
-  EXPECT_LE(RelativeError(PairKernel(below, below),
-                          KernelOverSigns(Quad{1} / 2 - Quad{below}, below, below)),
+  EXPECT_LE(RelativeError(PairKernel(below, below), KernelOverSigns(below, below)),
             kKernelRelativeError);
 }
 
@@ -69,7 +70,7 @@ TEST(Kernel, ValuesAtTheEdgesOfItsDomain) {
 // ---- moments ----
 
 double ErrorOfMoments(double ep) {
-  const Quad eb = Quad{1} / 2 - Quad{ep};
+  const Quad eb = PairBall(ep);
   return std::max(
       {RelativeError(PairCollisionRate(ep), CollisionRateAsPrinted(eb, Quad{ep}, QuadPi())),
        RelativeError(PairEnergyCurrent(ep), EnergyCurrentAsPrinted(eb, Quad{ep}, QuadPi())),
@@ -104,7 +105,7 @@ TEST(Kernel, MomentsAreAccurateForEveryEnergy) {
   for (double gap = 1e-16; gap < 1e-2; gap *= 3) {
     const double ep = 0.25 - gap;
     energies.push_back(ep);
-    const Quad exact = CollisionRateAsPrinted(Quad{1} / 2 - Quad{ep}, Quad{ep}, QuadPi());
+    const Quad exact = CollisionRateAsPrinted(PairBall(ep), Quad{ep}, QuadPi());
     worst_printed =
         std::max(worst_printed, RelativeError(CollisionRateAsPrinted(0.5 - ep, ep, M_PI), exact));
   }
@@ -123,10 +124,9 @@ TEST(Kernel, CurrentIsAccurateThroughItsZero) {
     const double offset = std::pow(10, exponent(random)) * (i % 2 == 0 ? 1 : -1);
     const double ep = static_cast<double>(zero * (1 + Quad{offset}) / 2);
     worst = std::max(worst, ErrorOfMoments(ep));
-    worst_printed =
-        std::max(worst_printed,
-                 RelativeError(EnergyCurrentAsPrinted(0.5 - ep, ep, M_PI),
-                               EnergyCurrentAsPrinted(Quad{1} / 2 - Quad{ep}, Quad{ep}, QuadPi())));
+    worst_printed = std::max(
+        worst_printed, RelativeError(EnergyCurrentAsPrinted(0.5 - ep, ep, M_PI),
+                                     EnergyCurrentAsPrinted(PairBall(ep), Quad{ep}, QuadPi())));
   }
   const double nearest = static_cast<double>(zero / 2);
   for (double ep : {std::nextafter(nearest, 0.0), nearest, std::nextafter(nearest, 1.0)}) {
@@ -147,14 +147,10 @@ Quad IntegratedKernel(Quad eb, Quad ep, Quad ep_out) {
   return sum;
 }
 
-Quad ExactBelow(Quad eb, Quad ep, Quad ep_out) {
-  return IntegratedKernel(eb, ep, ep_out) / IntegratedKernel(eb, ep, eb);
-}
-
-Quad PairBall(double ep) { return Quad{1} / 2 - Quad{ep}; }
-
 double ErrorOf(double ep, double ep_out) {
-  return RelativeError(KernelDistribution(ep).Below(ep_out), ExactBelow(PairBall(ep), ep, ep_out));
+  const Quad eb = PairBall(ep);
+  const Quad exact = IntegratedKernel(eb, ep, ep_out) / IntegratedKernel(eb, ep, eb);
+  return RelativeError(KernelDistribution(ep).Below(ep_out), exact);
 }
 
 // Anywhere, next to the ends and the middle; and where the ball keeps little energy. There F is 1

@@ -2,6 +2,7 @@
 #include "core/closed_form/pair_measures.h"
 
 #include "core/closed_form/exchange_rate.h"
+#include "core/closed_form/kernel.h"
 #include "core/closed_form/mean_free_time.h"
 #include "tests/core/preamble.h"
 #include "tests/oracle/measures_by_quadrature.h"
@@ -73,6 +74,110 @@ TEST(PairMeasures, RareCollisionsSeeAWedge) {
       const double area = Measures(GeometryOf(rho, delta)).area_ball_piston;
       // The next order is delta/lambda, of which lambda >= 0.06 here.
       EXPECT_NEAR(area / delta / delta / (sqrt2 * Lambda(rho)), 1, 1e-14 + 40 * delta);
+    }
+  }
+}
+
+// ---- mean_free_time.h ----
+
+TEST(MeanFreeTime, RareLimitRateIsTheLimitOfTheRate) {
+  for (double rho : {0.501, kPaperRho, 0.6, 0.65, 0.7}) {
+    for (double fraction : {1e-3, 1e-6, 1e-9}) {
+      const double delta = fraction * PairDeltaBound(rho);
+      const double rate = 1 / (MeanFreeTimesOf(GeometryOf(rho, delta)).ball_piston * delta * delta);
+      // The leading correction, a few delta/lambda, is the reason for the tolerance's second term.
+      EXPECT_NEAR(rate / RareLimitRate(rho), 1, 1e-13 + 4 * delta / Lambda(rho)) << rho;
+    }
+  }
+}
+
+double ErrorOfPhi(double ep) {
+  const Quad eb = Quad{1} / 2 - Quad{ep};
+  return RelativeError(Phi(ep), 4 * CollisionRateAsPrinted(eb, Quad{ep}, QuadPi()));
+}
+
+TEST(MeanFreeTime, PhiIsAccurateForEveryEnergy) {
+  for (double ep : {0.0, 1e-300, 0.5}) EXPECT_LE(ErrorOfPhi(ep), kConditionalRateRelativeError);
+  std::mt19937_64 random(20240604);
+  std::uniform_real_distribution<double> exponent(-14, 0);
+  for (int i = 0; i < 500; ++i) {
+    const double small = 0.5 * std::pow(10, exponent(random));
+    for (double ep : {small, 0.5 - small, 0.25 + small / 2, 0.25 - small / 2}) {
+      EXPECT_LE(ErrorOfPhi(ep), kConditionalRateRelativeError) << ep;
+    }
+  }
+}
+
+TEST(MeanFreeTime, ConditionalMeanFreeTimeIsTauOverPhi) {
+  const PairGeometry geometry = PaperGeometry(0.1);
+  const double tau = MeanFreeTimesOf(geometry).ball_piston;
+  for (double ep : {1e-300, 0.125, 0.25, 0.375, 0.5 - 1e-16}) {
+    EXPECT_DOUBLE_EQ(ConditionalMeanFreeTime(geometry, ep) * Phi(ep), tau);
+  }
+}
+
+// A small delta. The ball meets a resting piston if the piston is within delta of the tip, which is
+// delta/(lambda + 2 delta) of the volume. A resting ball waits until the piston has gone to its far
+// wall and back, 2 (lambda + 2 delta) at speed 1. Both hold to first order in delta.
+TEST(MeanFreeTime, AtRestOnlyTheVisitedPartCounts) {
+  const double delta = 1e-6;
+  const PairGeometry geometry = PaperGeometry(delta);
+  const double tau = MeanFreeTimesOf(geometry).ball_piston, lambda = geometry.lambda();
+  EXPECT_NEAR(ConditionalMeanFreeTime(geometry, 0) * Phi(0) / tau, delta / (lambda + 2 * delta),
+              10 * delta * delta);
+  EXPECT_NEAR(ConditionalMeanFreeTime(geometry, 0.5), 2 * lambda, 10 * delta);
+}
+
+// ---- exchange_rate.h ----
+
+// The canonical density of the energies of a pair, eq. canmeasure.
+double CanonicalDensity(double beta, double eb, double ep) {
+  return beta * std::sqrt(beta / (M_PI * ep)) * std::exp(-beta * (eb + ep));
+}
+
+// A function of (eb, ep) with the total energy E is that of the energies over 2 E, times a power of
+// 2 E.
+struct Moment {
+  std::function<double(double ep)> of_pair;
+  double power;
+};
+
+// Integral of the moment over the canonical density, in the total energy E and u = sqrt(ep/E):
+// deb dep = 2 E u dE du. The kink at eb = ep, u = 1/sqrt(2), is a power 3/2 or 5/2. E is
+// integrated to 50/beta in five pieces; the rest is of the order exp(-50).
+double CanonicalAverage(double beta, const Moment& moment) {
+  const auto at_energy = [&](Quad energy) {
+    const double e = static_cast<double>(energy);
+    const auto integrand = [&](Quad q) {
+      const double u = static_cast<double>(q), ep = e * u * u, eb = e * (1 - u * u);
+      return CanonicalDensity(beta, eb, ep) * std::pow(2 * e, moment.power) *
+             moment.of_pair(u * u / 2) * 2 * e * u;
+    };
+    return oracle::IntegrateToRoot(integrand, 0, M_SQRT1_2) +
+           oracle::Integrate(integrand, M_SQRT1_2, 1);
+  };
+  Quad sum = 0;
+  for (int piece = 0; piece < 5; ++piece) {
+    // E = s^2 takes the square root out of the energy's density.
+    const double from = std::sqrt(10 * piece / beta);
+    const double to = std::sqrt(10 * (piece + 1) / beta);
+    sum += oracle::Integrate([&](Quad s) { return 2 * s * at_energy(s * s); }, from, to);
+  }
+  return static_cast<double>(sum);
+}
+
+// Tolerance of all averages: rounding of some 1e4 doubles of one sign, and exp(-50).
+constexpr double kCanonicalAverageError = 1e-12;
+
+TEST(ExchangeRate, AveragesEqualIntegralsOfTheMoments) {
+  const auto current = [](double ep) { return (0.5 - 2 * ep) * PairEnergyCurrent(ep); };
+  for (double beta : {0.1, 1.0, 7.0}) {
+    const CanonicalAverages averages = AveragesAt(beta);
+    for (const auto& [moment, average] :
+         {std::pair(Moment{PairCollisionRate, 0.5}, averages.mean_f),
+          {Moment{current, 2.5}, averages.mean_energy_current},
+          {Moment{PairSquaredEnergyTransfer, 2.5}, averages.mean_h}}) {
+      EXPECT_NEAR(CanonicalAverage(beta, moment) / average, 1, kCanonicalAverageError) << beta;
     }
   }
 }

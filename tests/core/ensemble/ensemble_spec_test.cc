@@ -2,8 +2,12 @@
 // follow from a specification.
 #include "core/ensemble/ensemble_spec.h"
 
+#include "core/ensemble/parameter.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/experiment/all_experiments.h"
+#include "core/gas/gas_shape.h"
+#include "core/geometry/temperature.h"
+#include "core/model_choice/ladder.h"
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
 
@@ -16,11 +20,6 @@ EnsembleSpec At(const ExperimentKind* experiment, double rho, double delta) {
   spec.grid[kRho] = {rho};
   spec.grid[kDelta] = {delta};
   return spec;
-}
-
-auto Names(const std::string& field, const std::string& text) {
-  return AllOf(Field(&FieldViolation::field, field),
-               Field(&FieldViolation::description, HasSubstr(text)));
 }
 
 // ---- tables ----
@@ -58,9 +57,6 @@ TEST(EnsembleSpec, ListsAreChecked) {
       {"gas-equilibrium hot=2 epsilon=0.1",
        {"grid.hot: does not use this list", "grid.epsilon: does not use this list"}},
       {"gas-conduction temperature=1", {"grid.temperature: gas-conduction does not use this list"}},
-      {"energy-relaxation epsilon=0,0.01,0.5"},
-      {"energy-relaxation epsilon=-0.1,0.51,nan",
-       {"grid.epsilon[0]: [0, 0.5]", "grid.epsilon[1]: [0, 0.5]", "grid.epsilon[2]: [0, 0.5]"}},
       // Times outside of the range of a double. The smallest radius decides.
       {"first-hit delta=0.1,1e-36,5e-324",
        {"grid.delta[1]: is 1e-36, too small", "grid.delta[2]: too small"}},
@@ -70,7 +66,6 @@ TEST(EnsembleSpec, ListsAreChecked) {
        {"grid.hot[1]: hot is 0.5, below cold = 1; permitted: hot >= cold",
         "grid.hot[3]: below cold = 1"}},
       {"gas-conduction hot=2 cold=nan,3,1", {"grid.cold[0]: nan"}},  // combinations come later
-      {"gas-conduction cold=0", {"grid.cold[0]: permitted: "}},
   });
   EXPECT_THAT(Violations(At(&kEquilibrium, kPaperRho, PairDeltaBound(kPaperRho))), IsEmpty());
 }
@@ -109,19 +104,14 @@ TEST(EnsembleSpec, TargetsAreChecked) {
       {"first-hit samples=1"},
       {"first-hit samples=1e12"},
       {"first-hit samples=1e13", {"target.samples: permitted: 1 to 1000000000000"}},
-      {"markov-property collisions=100"},
-      {"markov-property budget=3"},
       {"markov-property samples=100"},
       {"gas-conduction delta=1e-10 collisions=1e6 model=billiard",
        {"target.collisions: is 1000000, but a sample has"}},
       {"gas-conduction hot=2,1 cold=1 budget=1"},
-      {"energy-relaxation samples=10"},
-      {"energy-relaxation collisions=10"},
       {"energy-relaxation samples=10 budget=1", {"target.budget: alone, or with a tolerance"}},
       {"energy-relaxation collisions=10 budget=1", {"target.budget: alone, or with a tolerance"}},
       {"energy-relaxation samples=10 tolerance=0.1", {"target: more than one kind"}},
       {"energy-relaxation tolerance=0.01 budget=1e-3"},
-      {"energy-relaxation budget=1e-3"},
       {"energy-relaxation budget=0", {"target.budget: 0 < budget <= 1"}},
       {"energy-relaxation budget=1e99", {"target.budget: 0 < budget <= 1"}},
       {"energy-relaxation budget=nan", {"target.budget: 0 < budget <= 1"}},
@@ -257,8 +247,6 @@ TEST(EnsembleSpec, GasesHaveTheirOwnBounds) {
          {"grid.delta[1]: rho = 0.6: 0 < delta <= rho/sqrt(2) - lambda/2 = 0.0926",
           "grid.delta[2]: the bound of a gas, where no two pistons may overlap"}},
         {gas + " delta=1e-160", {"grid.delta[0]: too small"}},
-        {gas + " cells=1,2,1e6"},
-        {gas + " cells=1,0.5,1e9", {"grid.cells[1]: 1 to 1000000", "grid.cells[2]: 1 to 1000000"}},
         {gas + " cells=", {"grid.cells: needs at least one"}},
     });
   }
@@ -336,6 +324,107 @@ TEST(EnsembleSpec, ThePermittedCollisionsAreThoseOfTheLargestNumberOfSamples) {
   spec.grid[kDelta] = {1e-10};
   spec.target = {.collisions = kMaxSamples};
   EXPECT_EQ(asked(0), static_cast<uint64_t>(kMaxSamples));
+}
+
+// ---- a grid whose points stand in a table ----
+
+EnsembleSpec TableOf(const std::vector<double>& rho, const std::vector<double>& delta) {
+  EnsembleSpec spec = Asked("first-hit epsilon=0.125,0.25 samples=100");
+  spec.grid[kRho] = rho;
+  spec.grid[kDelta] = delta;
+  spec.grid.MakeColumn(kRho);
+  spec.grid.MakeColumn(kDelta);
+  return spec;
+}
+
+TEST(TableOfPoints, IsMultipliedByTheOtherListsAndVariesSlowest) {
+  const EnsembleSpec spec = TableOf({0.53, 0.6, 0.55}, {0.2, 0.05, 0.1});
+  ASSERT_THAT(Violations(spec), IsEmpty());
+  ASSERT_EQ(PointCount(spec), 6u);
+  EXPECT_EQ(PointAt(spec, 1),
+            (PointParameters{{kRho, 0.53}, {kDelta, 0.2}, {kEpsilon, 0.25}, {kExponent, 1}}));
+  EXPECT_EQ(PointAt(spec, 4),
+            (PointParameters{{kRho, 0.55}, {kDelta, 0.1}, {kEpsilon, 0.125}, {kExponent, 1}}));
+}
+
+// delta = 0.3 is permitted beside rho = 0.53, but not beside 0.6.
+TEST(TableOfPoints, AValueIsCheckedBesideThoseOfItsRow) {
+  EXPECT_THAT(Violations(TableOf({0.53, 0.6}, {0.3, 0.05})), IsEmpty());
+  EXPECT_THAT(Violations(TableOf({0.53, 0.6}, {0.05, 0.3})), ElementsAre(OfField("grid.delta[1]")));
+}
+
+TEST(TableOfPoints, HotIsComparedWithTheColdOfItsRow) {
+  EnsembleSpec spec = Asked("gas-conduction rho=0.53 hot=1,3 cold=0.5,2");
+  EXPECT_THAT(Violations(spec), ElementsAre(OfField("grid.hot[0]")));
+  spec.grid.MakeColumn(kHot);
+  spec.grid.MakeColumn(kCold);
+  EXPECT_THAT(Violations(spec), IsEmpty());
+  spec.grid[kHot] = {1, 2};
+  spec.target = {.tolerance = 0.1};
+  EXPECT_THAT(AnswerViolations(spec), ElementsAre(OfField("target.tolerance")));
+}
+
+TEST(TableOfPoints, ColumnsAreEquallyLong) {
+  EXPECT_THAT(Violations(TableOf({0.53, 0.6}, {0.05})), ElementsAre(OfField("grid.delta")));
+  EXPECT_THAT(Violations(TableOf({}, {0.05})), Contains(OfField("grid.rho")));
+  EXPECT_THAT(Violations(TableOf({}, {})), Contains(OfField("grid.rho")));
+}
+
+// ---- parameter.h ----
+
+// The index is part of random streams and of stored records.
+TEST(Parameter, IndexIsThePlaceInTheList) {
+  constexpr const char* kNames[] = {"rho",   "delta",       "epsilon", "exponent",
+                                    "cells", "temperature", "hot",     "cold"};
+  ASSERT_EQ(kParameters.size(), std::size(kNames));
+  for (size_t i = 0; i < kParameters.size(); ++i) {
+    EXPECT_EQ(kParameters[i]->index, i);
+    EXPECT_EQ(kParameters[i]->name, kNames[i]);
+  }
+}
+
+TEST(Parameter, CodesOfShapesAreTheValuesOfCells) {
+  for (const char* text :
+       {"1", "1000000", "1x1", "1000000x1", "1x1000000", "1000x1000", "1x524288", "524288x1"}) {
+    EXPECT_OK(kCells.Validate(CodeOf(ParseGasShape(text).value()))) << text;
+  }
+  constexpr double kRow = 0x1p20;  // the code of a lattice without columns
+  for (const double value : {0.0, -1.0, 0.5, 12.5, 1e6 + 1, kRow - 1, kRow, kRow + 0.5, 3 * kRow,
+                             CodeOf({.columns = 1001, .rows = 1000, .is_lattice = true}),
+                             CodeOf({.columns = 1, .rows = 1'000'001, .is_lattice = true}), 0x1p41,
+                             0x1p63, 1e300, HUGE_VAL, -HUGE_VAL, std::nan("")}) {
+    EXPECT_THAT(kCells.Validate(value),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         HasSubstr("permitted: codes of N or NxM, 1 to 1000000 cells in all")))
+        << value;
+  }
+  EXPECT_THAT(kCells.Validate(0.5).message(), HasSubstr("cells is the code 0.5; "));
+}
+
+TEST(Parameter, RangesAreClosedToTheLastBit) {
+  const std::tuple<const Parameter*, double, double, const char*> kRanges[] = {
+      {&kEpsilon, 0, 0.5, "[0, 0.5]"},
+      {&kExponent, 0, kMaxExponent, "[0, 1000]"},
+      {&kTemperature, kMinTemperature, kMaxTemperature, "[1e-120, 1e+120]"},
+      {&kHot, kMinTemperature, kMaxTemperature, "[1e-120, 1e+120]"},
+      {&kCold, kMinTemperature, kMaxTemperature, "[1e-120, 1e+120]"}};
+  for (const auto& [parameter, lower, upper, permitted] : kRanges) {
+    for (const double value : {lower, 0.25, upper}) {
+      EXPECT_OK(parameter->Validate(value)) << parameter->name;
+    }
+    for (const double value : {std::nextafter(lower, -HUGE_VAL), std::nextafter(upper, HUGE_VAL),
+                               HUGE_VAL, -HUGE_VAL, std::nan("")}) {
+      EXPECT_THAT(parameter->Validate(value), StatusIs(absl::StatusCode::kInvalidArgument))
+          << parameter->name << " " << value;
+    }
+    EXPECT_EQ(parameter->Validate(-1).message(),
+              absl::StrCat(parameter->name, " is -1; permitted: ", permitted));
+  }
+}
+
+TEST(Grid, APointHasZeroForMinusZero) {
+  const Grid grid = {{kEpsilon, {-0.0, 0.0}}};
+  EXPECT_FALSE(std::signbit(grid.PointAt(0)[kEpsilon]));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "core/ensemble/point_experiment.h"
 
 #include "core/closed_form/mean_free_time.h"
-#include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/random_stream.h"
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_exchange_rate.h"

@@ -1,12 +1,10 @@
 // The experiment `gas-conduction`: estimates, profile, fluctuations, times.
 #include <ctime>
 
-#include "absl/strings/str_cat.h"
-#include "core/ensemble/experiment_kind.h"
 #include "core/experiment/steady_gas.h"
+#include "core/experiment/steady_group.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/geometry/temperature.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 
@@ -21,18 +19,12 @@ EnsembleSpec SpecBetween(double hot, double cold, const GasShape& shape = {.colu
   return SpecOf(&kGasConduction, point, {.samples = 1024}, model, 7);
 }
 
-std::vector<std::string> NamesOf(const PointSummary& summary) {
-  std::vector<std::string> names;
-  for (const Estimate& estimate : summary.estimates) names.push_back(estimate.name);
-  return names;
-}
-
 TEST(GasConduction, EstimatesFollowFromTheCurrent) {
   for (const GasShape& shape : {GasShape{3}, GasShape{3, 2, true}}) {
     const PointSummary summary = RunPoint(SpecBetween(3, 1, shape));
-    EXPECT_EQ(NamesOf(summary), (std::vector<std::string>{
-                                    "heat_current", "conductivity", "conductivity_ratio",
-                                    "exchange_rate", "temperature_ball", "temperature_piston"}));
+    EXPECT_THAT(NamesOf(summary),
+                ElementsAre("heat_current", "conductivity", "conductivity_ratio", "exchange_rate",
+                            "temperature_ball", "temperature_piston"));
     // J N sqrt(T)/[(2/3)(hot^(3/2) - cold^(3/2))] with N = 3, T = 2.
     const double per_current = 3 * std::sqrt(2.0) / (2.0 / 3 * (std::sqrt(27.0) - 1));
     const Estimate &current = summary.estimates[0], &conductivity = summary.estimates[1];
@@ -189,9 +181,8 @@ TEST(GasConduction, TheProfileOfALongGasHasSharedPlaces) {
 TEST(GasConduction, EqualTemperaturesCarryNoCurrent) {
   for (const Model model : kModelsThatSampleGases) {
     const PointSummary summary = RunPoint(SpecBetween(2, 2, {.columns = 3}, model));
-    EXPECT_EQ(NamesOf(summary),
-              (std::vector<std::string>{"heat_current", "exchange_rate", "temperature_ball",
-                                        "temperature_piston"}));
+    EXPECT_THAT(NamesOf(summary), ElementsAre("heat_current", "exchange_rate", "temperature_ball",
+                                              "temperature_piston"));
     // 3 models, 3 estimates and 7 places within 4.5 standard errors: one false alarm in 5,000
     // seeds.
     EXPECT_EQ(summary.estimates[0].exact, 0);
@@ -208,13 +199,17 @@ TEST(GasConduction, EqualTemperaturesCarryNoCurrent) {
 
 // ---- times ----
 
+// In halves of the relaxation time.
+uint64_t WarmUpOf(const EnsembleSpec& spec) {
+  return ForecastOf(spec, PointAt(spec, 0)).trajectories->warm_up;
+}
+
 // Exchanges of a contact in the warm-up. A longer gas has shorter stretches, but more of them.
 double ExchangesOfAWarmUp(const EnsembleSpec& spec) {
   const PointParameters point = PointAt(spec, 0);
   const GasShape shape = ShapeOf(point[kCells]);
-  const Forecast forecast = ForecastOf(spec, point);
-  return forecast.collisions / static_cast<double>(shape.contacts()) *
-         static_cast<double>(forecast.trajectories->warm_up);
+  return ForecastOf(spec, point).collisions / static_cast<double>(shape.contacts()) *
+         static_cast<double>(WarmUpOf(spec));
 }
 
 // The warm-up grows with the square of the length, and with the time of a slow piston: the current
@@ -224,8 +219,7 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
   const auto of_length = [](int64_t columns) {
     return ExchangesOfAWarmUp(SpecBetween(3, 1, {.columns = columns}));
   };
-  const PointParameters short_gas = PointAt(SpecBetween(3, 1), 0);
-  EXPECT_EQ(kGasConduction.forecast(Model::kBilliard, short_gas).trajectories->warm_up, 2u);
+  EXPECT_EQ(WarmUpOf(SpecBetween(3, 1)), 2u);
   EXPECT_NEAR(of_length(19) / of_length(9), 4, 1e-12);
   EXPECT_NEAR(of_length(1'600) / of_length(299), std::pow(1'601. / 300, 2), 1e-8);
   const auto at_cold = [](Model model, double cold) {
@@ -247,17 +241,13 @@ TEST(GasConduction, TheWarmUpIsThatOfTheSlowestPart) {
 // In 80 first answers of 1x225 cells of the billiard between 1 and 0.15, after one relaxation time,
 // the mean z-score of the pistons' temperature was 0.9 +- 0.1.
 TEST(GasConduction, BesideAColdReservoirABilliardWarmsUpLonger) {
-  const auto halves = [](Model model, double cold) {
-    return kGasConduction.forecast(model, PointAt(SpecBetween(1, cold), 0)).trajectories->warm_up;
-  };
-  for (const Model model : kModelsThatSampleGases) {
-    const bool is_billiard = model != Model::kMarkov;
-    EXPECT_EQ(halves(model, 1), 2u);
-    EXPECT_EQ(halves(model, 0.34), 2u);
-    EXPECT_EQ(halves(model, 0.15), is_billiard ? 4u : 2u);
-    EXPECT_EQ(halves(model, 0.14), is_billiard ? 8u : 2u);
-    EXPECT_EQ(halves(model, 0.01), is_billiard ? 16u : 2u);
-    EXPECT_EQ(halves(model, 1e-8), is_billiard ? 16u : 2u);
+  for (const auto& [cold, of_billiard] :
+       {std::pair(1.0, 2u), {0.34, 2u}, {0.15, 4u}, {0.14, 8u}, {0.01, 16u}, {1e-8, 16u}}) {
+    for (const Model model : kModelsThatSampleGases) {
+      EXPECT_EQ(WarmUpOf(SpecBetween(1, cold, {.columns = 3}, model)),
+                model == Model::kMarkov ? 2u : of_billiard)
+          << cold;
+    }
   }
 }
 
@@ -277,16 +267,10 @@ TEST(GasConduction, TheStatesOfALargeGasFitIntoTheStore) {
 // In 30 first answers of 1x2000 cells of the jump process between 1 and 0.2, after one relaxation
 // time, the mean z-score of the pistons' temperature was 0.9 +- 0.2.
 TEST(GasConduction, ALargeGasWarmsUpLonger) {
-  const auto halves = [](int64_t rows) {
-    const EnsembleSpec spec = SpecBetween(1, 0.2, {1, rows, true}, Model::kMarkov);
-    return ForecastOf(spec, PointAt(spec, 0)).trajectories->warm_up;
-  };
-  EXPECT_EQ(halves(225), 2u);
-  EXPECT_EQ(halves(226), 4u);
-  EXPECT_EQ(halves(1'662), 4u);
-  EXPECT_EQ(halves(1'663), 8u);
-  EXPECT_EQ(halves(90'771), 8u);
-  EXPECT_EQ(halves(90'772), 16u);
+  for (const auto& [rows, halves] :
+       {std::pair(225, 2u), {226, 4u}, {1'662, 4u}, {1'663, 8u}, {90'771, 8u}, {90'772, 16u}}) {
+    EXPECT_EQ(WarmUpOf(SpecBetween(1, 0.2, {1, rows, true}, Model::kMarkov)), halves) << rows;
+  }
 }
 
 // The rate of exchanges in long runs is 0.06340(1). After a warm-up of one relaxation time it was
@@ -335,6 +319,67 @@ TEST(GasConduction, AWindowOfTheChargeIsStatedFromEnoughLongWindowsOn) {
   EXPECT_THAT(stated(16'900), ElementsAre(5));
   EXPECT_THAT(stated(66'000), ElementsAre(7, 3));
   EXPECT_THAT(stated(264'000), ElementsAre(9, 5, 3));
+}
+
+// ---- samples that continue each other: steady_gas.h, steady_group.h ----
+
+TEST(SteadyGas, ADamagedStateCannotContinue) {
+  const auto point = PointExperiment::Create(
+      SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.2), {.samples = 1}, Model::kBilliard, 5),
+      0);
+  const GroupState state = FoldPoint(*point).groups[3];
+  EXPECT_TRUE(point->CanContinue(state));
+  EXPECT_FALSE(point->CanContinue({}));
+  const auto with = [&](size_t place, double number) {
+    std::vector<double> numbers(state.numbers().begin(), state.numbers().end());
+    numbers[place] = number;
+    return GroupState(std::move(numbers));
+  };
+  const size_t last = state.numbers().size() - 1;  // a piston's velocity, after its offset
+  EXPECT_FALSE(point->CanContinue(with(last, std::nan(""))));
+  EXPECT_FALSE(point->CanContinue(with(last - 1, 0.9)));
+  EXPECT_FALSE(point->CanContinue(with(0, -1)));
+  EXPECT_FALSE(point->CanContinue(with(1, 1e9)));
+  std::vector<double> more(state.numbers().begin(), state.numbers().end());
+  more.push_back(0);
+  EXPECT_FALSE(point->CanContinue(GroupState(std::move(more))));
+}
+
+// The variance of 4,000 energies has a standard error of 3 %. The tolerance is 5 standard errors,
+// so a false alarm has the probability 6e-7 for each shape.
+TEST(SteadyGas, VarianceOfEnergyIsThatOfItsStarts) {
+  for (const GasShape& shape : {GasShape{3}, GasShape{3, 2, true}}) {
+    const auto point = PointExperiment::Create(
+        SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.2, shape), {}, Model::kBilliard), 0);
+    const auto& gas = dynamic_cast<const SteadyGas&>(*point);
+    Moments energies;
+    for (uint64_t start = 0; start < 4000; ++start) {
+      CounterRandom random(1, 2, start);
+      energies.Add(EnergyOf(DrawGas(gas.geometry(), gas.TemperaturesAtStart(), random)));
+    }
+    EXPECT_NEAR(*energies.Variance() / gas.VarianceOfEnergy(), 1, 0.15);
+  }
+}
+
+TEST(SteadyGroup, WindowsHoldTheWholeCharge) {
+  const SteadyShape shape = {.trajectories = 2, .balls = 1, .pistons = 2};
+  SteadyGroup group = shape.NewGroup();
+  std::vector<double> charges;
+  for (int i = 0; i < 13; ++i) {
+    charges.push_back(i * i);
+    group.AddStretch({charges.back(), 0});
+    group = shape.Read(shape.Written(group));  // windows may begin in one chunk and end in another
+  }
+  for (size_t length = 0; length < 5; ++length) {
+    const size_t stretches = size_t{1} << length, windows = charges.size() / stretches;
+    Moments expected;
+    for (size_t i = 0; i < windows; ++i) {
+      const auto first = charges.begin() + static_cast<std::ptrdiff_t>(i * stretches);
+      expected.Add(std::accumulate(first, first + static_cast<std::ptrdiff_t>(stretches), 0.0));
+      expected.Add(0);
+    }
+    EXPECT_EQ(group.windows[length], expected) << length;
+  }
 }
 
 }  // namespace

@@ -1,9 +1,7 @@
 // The experiment `gas-equilibrium`: estimates, exact values, laws of speeds.
 #include "core/conductivity/conductivity.h"
-#include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 
@@ -24,11 +22,10 @@ TEST(GasEquilibrium, EstimatesHaveTheirNamesAndExactValues) {
                                      {GasShape{3}, Model::kMarkov},
                                      {GasShape{3}, Model::kBilliardReference}}) {
     const PointSummary summary = RunPoint(SpecAt(2, model, shape));
-    std::vector<std::string> names;
-    for (const Estimate& estimate : summary.estimates) names.push_back(estimate.name);
-    EXPECT_THAT(names, ElementsAre("exchange_rate", "temperature_ball", "temperature_piston",
-                                   "ball_speed_divergence", "piston_speed_divergence",
-                                   "conductivity", "conductivity_ratio"));
+    EXPECT_THAT(NamesOf(summary),
+                ElementsAre("exchange_rate", "temperature_ball", "temperature_piston",
+                            "ball_speed_divergence", "piston_speed_divergence", "conductivity",
+                            "conductivity_ratio"));
     const GasGeometry geometry =
         GasGeometry::Create(kPaperRho, 0.2, shape, GasEnds::kPeriodic).value();
     EXPECT_EQ(summary.estimates[0].exact, GasExchangeRate(geometry, 2));
@@ -36,7 +33,8 @@ TEST(GasEquilibrium, EstimatesHaveTheirNamesAndExactValues) {
     EXPECT_EQ(summary.estimates[2].exact, 2);
     // 15 z-scores within 4.5 standard errors: one false alarm in 10,000 seeds.
     for (size_t i = 0; i < 3; ++i) {
-      EXPECT_LT(std::fabs(*summary.estimates[i].ZScore()), 4.5) << names[i] << Name(model);
+      const Estimate& mean = summary.estimates[i];
+      EXPECT_LT(std::fabs(*mean.ZScore()), 4.5) << mean.name << Name(model);
     }
     EXPECT_EQ(summary.health.escapes, 0u);
     EXPECT_LT(summary.health.max_energy_error, 1e-13) << Name(model);
@@ -49,9 +47,7 @@ TEST(GasEquilibrium, EstimatesHaveTheirNamesAndExactValues) {
 std::vector<std::string> NamesFor(const std::string& estimate, Model model) {
   EnsembleSpec spec = SpecAt(2, model);
   spec.target.estimate = estimate;
-  std::vector<std::string> names;
-  for (const Estimate& found : RunPoint(spec).estimates) names.push_back(found.name);
-  return names;
+  return NamesOf(RunPoint(spec));
 }
 
 TEST(GasEquilibrium, TheConductivityComesFirstIfItIsNamed) {

@@ -2,7 +2,6 @@
 #include "core/closed_form/kernel.h"
 #include "core/experiment/markov_property_statistics.h"
 #include "core/statistics/group_scatter.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 
@@ -50,16 +49,12 @@ std::vector<Estimate> EstimatesOf(const BlockResult& counts, bool is_limit = fal
 double Uniform(CounterRandom& random) { return random.Uniform(); }
 double Exponential(CounterRandom& random) { return -Log(random.Uniform()); }
 
-BlockResult CountsOfJumpProcess(uint64_t seed, int orbits) {
-  return CountsOfProcess(
-      seed, orbits, [](CounterRandom& random, double, double) { return Uniform(random); },
-      [](CounterRandom& random, double) { return Exponential(random); });
-}
-
 // 4 standard errors for three correlations and two divergences, 6e-5 false alarms each; sqrt(N) D
 // above 2.5 has a probability of 2 exp(-12.5) = 7e-6.
 TEST(MarkovPropertyStatistics, JumpProcessHasNoMemory) {
-  const BlockResult counts = CountsOfJumpProcess(1, 20'000);
+  const BlockResult counts = CountsOfProcess(
+      1, 20'000, [](CounterRandom& random, double, double) { return Uniform(random); },
+      [](CounterRandom& random, double) { return Exponential(random); });
   ASSERT_EQ(counts.samples, 640'000u);
   const std::vector<Estimate> estimates = EstimatesOf(counts, true);
   ASSERT_EQ(estimates.size(), 6u);

@@ -3,10 +3,9 @@
 #include "core/billiard/orbits.h"
 #include "core/experiment/expected_returns.h"
 #include "tests/core/billiard/recorded_collisions.h"
-#include "tests/core/one_point_spec.h"
 #include "tests/core/preamble.h"
-#include "tests/core/run_orbits.h"
 #include "tests/core/run_point.h"
+#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
@@ -79,12 +78,17 @@ TEST(ReturnTimes, IntegralOfTheSurvivalIsTheMeanHitTime) {
 
 // ---- expected_returns.h ----
 
-struct CountedReturn : ReturnOrbit {
-  Collision collision;
-  AfterCollision Collide(const ReturnStarts&, const Collision& end) {
-    collision = end;
+struct CountedReturns : NumberedOrbits {
+  explicit CountedReturns(const ReturnStarts& from) : starts(from) {}
+  PairState Start(uint64_t orbit) override { return starts.Draw(orbit); }
+  AfterCollision Collide(uint64_t, const Collision& collision) override {
+    ball_wall.Add(static_cast<double>(collision.ball_wall_hits));
+    piston_wall.Add(static_cast<double>(collision.piston_wall_hits));
     return AfterCollision::kEnd;
   }
+
+  const ReturnStarts starts;
+  Moments ball_wall, piston_wall;
 };
 
 // Starts are from the invariant law, exponent 1. The predictions are exact means: 5 standard
@@ -95,17 +99,12 @@ TEST(PredictedHits, MatchReturnsAtAnEnergy) {
     const PredictedHits predicted = HitsPerReturn(geometry, epsilon);
     EXPECT_EQ(predicted.Events(), 1 + predicted.ball_wall + predicted.piston_wall);
     for (const Engine engine : kEngines) {
-      const ReturnStarts starts = {geometry, epsilon, 1, {.seed = 1, .stream = 2}};
-      const BlockResult empty;
-      BlockOrbits<CountedReturn, ReturnStarts> returns(starts, {.samples = 20'000}, empty);
-      ASSERT_TRUE(RunAll(engine, geometry, returns));
-      Moments ball_wall, piston_wall;
-      for (uint64_t i = 0; i < returns.count(); ++i) {
-        ball_wall.Add(static_cast<double>(returns[i].collision.ball_wall_hits));
-        piston_wall.Add(static_cast<double>(returns[i].collision.piston_wall_hits));
-      }
-      EXPECT_NEAR(ball_wall.mean, predicted.ball_wall, 5 * *ball_wall.StandardError());
-      EXPECT_NEAR(piston_wall.mean, predicted.piston_wall, 5 * *piston_wall.StandardError());
+      CountedReturns returns({geometry, epsilon, 1, {.seed = 1, .stream = 2}});
+      ASSERT_TRUE(returns.Run(engine, geometry, 20'000));
+      EXPECT_NEAR(returns.ball_wall.mean, predicted.ball_wall,
+                  5 * *returns.ball_wall.StandardError());
+      EXPECT_NEAR(returns.piston_wall.mean, predicted.piston_wall,
+                  5 * *returns.piston_wall.StandardError());
     }
   }
 }

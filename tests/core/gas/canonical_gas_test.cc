@@ -2,18 +2,10 @@
 
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
-#include "tests/oracle/one_sample.h"
-#include "tests/oracle/two_sample.h"
+#include "tests/oracle/samples.h"
 
 namespace ballpiston {
 namespace {
-
-// Crowded: a piston takes 1.8 % of a cell on either side, and is inside of a cell half of the time.
-constexpr double kCrowdedRho = 0.52;
-
-GasGeometry CrowdedGas(const char* shape, GasEnds ends = GasEnds::kPeriodic) {
-  return GasAtShare(kCrowdedRho, 1, shape, ends);
-}
 
 bool HasBallBeyondPiston(const GasGeometry& gas, const GasState& state) {
   for (int64_t ball = 0; ball < gas.balls(); ++ball) {
@@ -26,9 +18,7 @@ bool HasBallBeyondPiston(const GasGeometry& gas, const GasState& state) {
 
 // By definition: all positions are drawn again until no ball is beyond a piston.
 GasState DrawnAsAWhole(const GasGeometry& gas, CounterRandom& random) {
-  GasState state;
-  state.balls.resize(static_cast<size_t>(gas.balls()));
-  state.pistons.resize(static_cast<size_t>(gas.pistons()));
+  GasState state = AtRest(gas);
   do {
     for (GasBall& ball : state.balls) {
       do {
@@ -81,7 +71,9 @@ TEST(CanonicalGas, PositionsMatchPlainRejection) {
                                     {"2x2", GasEnds::kPeriodic},
                                     {"2x2", GasEnds::kReservoirs}}) {
     SCOPED_TRACE(shape);
-    const GasGeometry gas = CrowdedGas(shape, ends);
+    // Crowded: a piston takes 1.8 % of a cell on either side, and is inside of a cell half of the
+    // time.
+    const GasGeometry gas = GasAtShare(0.52, 1, shape, ends);
     Observed drawn, expected;
     const auto configurations = static_cast<uint64_t>(200'000 / gas.balls());
     for (uint64_t i = 0; i < configurations; ++i) {

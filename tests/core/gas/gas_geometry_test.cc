@@ -1,10 +1,8 @@
 #include "core/gas/gas_geometry.h"
 
-#include "absl/strings/str_split.h"
 #include "core/gas/gas_shape.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston {
 namespace {

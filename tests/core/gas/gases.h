@@ -1,16 +1,11 @@
 // Gases for tests. Their parameters must be valid.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
-#include "absl/strings/string_view.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_shape.h"
 #include "core/gas/gas_state.h"
-#include "core/sampling/counter_random.h"
+#include "tests/core/preamble.h"
 
 namespace ballpiston {
 
@@ -31,6 +26,14 @@ inline GasState GasInEquilibrium(const GasGeometry& geometry, double temperature
                                  uint64_t sample) {
   CounterRandom random(seed, 0, sample);
   return DrawGas(geometry, TemperatureProfile(temperature), random);
+}
+
+// All bodies in the middle of their places.
+inline GasState AtRest(const GasGeometry& geometry) {
+  GasState state;
+  state.balls.resize(static_cast<size_t>(geometry.balls()));
+  state.pistons.resize(static_cast<size_t>(geometry.pistons()));
+  return state;
 }
 
 // All positions and velocities, in the order of a tangent vector's components.

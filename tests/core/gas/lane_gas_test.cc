@@ -107,9 +107,8 @@ uint64_t MeetInTheTip(const GasGeometry& gas, CounterRandom& random) {
   const double speed = random.Uniform(), off = 1e-15 * (random.Uniform() - 0.5);
   const Eigen::Vector2d direction = Eigen::Vector2d(1, slope).normalized();
   const Eigen::Vector2d tip = {gas.pair().tip(), 0};
-  GasState state;
+  GasState state = AtRest(gas);
   state.balls = {{.position = tip - kWay * direction, .direction = direction, .speed = 1}};
-  state.pistons.resize(static_cast<size_t>(gas.pistons()));
   state.pistons[0] = {.offset = tip.x() - kWay * speed * direction.x() - 0.5 + off,
                       .velocity = speed * direction.x()};
   const auto gases = InLanes(gas, state);
@@ -165,9 +164,7 @@ TEST(LaneGas, AGasThatLosesItsBallsEnds) {
 // A gas at rest except for one piston, which comes to a resting ball within its reach.
 TEST(LaneGas, ThePistonMeetsABallAtRestAtItsPlace) {
   const GasGeometry gas = GasOf(kPaperRho, 0.15, "3");
-  GasState state = GasInEquilibrium(gas, 1, 43, 0);
-  for (GasBall& ball : state.balls) ball = {.position = {0, 0}};
-  for (GasPiston& piston : state.pistons) piston = {};
+  GasState state = AtRest(gas);
   const auto piston = static_cast<size_t>(gas.PistonOf(1, Direction::kRight));
   state.balls[1].position = {gas.pair().tip() - 0.05, 0};
   state.pistons[piston] = {.offset = 0, .velocity = -1};

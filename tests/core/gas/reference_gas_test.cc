@@ -12,13 +12,6 @@ ReferenceGas GasFrom(const GasGeometry& geometry, const GasState& state) {
   return ReferenceGas(geometry, state, ThermalWalls());
 }
 
-GasState AtRest(const GasGeometry& gas) {
-  GasState state;
-  state.balls.resize(static_cast<size_t>(gas.balls()));
-  state.pistons.resize(static_cast<size_t>(gas.pistons()));
-  return state;
-}
-
 // A pair in the place of a ball and the piston that it sees in the direction, `speed` times as
 // fast.
 GasState WithPair(const GasGeometry& gas, const PairState& pair, double speed, int64_t ball,

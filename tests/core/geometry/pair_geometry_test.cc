@@ -2,7 +2,6 @@
 
 #include "core/arithmetic/number_text.h"
 #include "tests/core/preamble.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston {
 namespace {

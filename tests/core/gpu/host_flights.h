@@ -1,14 +1,8 @@
 // A stand-in for a device: flies the lanes on the processor, and fails when a test wants it.
 #pragma once
 
-#include <atomic>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "core/gpu/flight_device.h"
+#include "tests/support/preamble.h"
 
 namespace ballpiston {
 

@@ -1,8 +1,6 @@
 // A machine to predict for, the choice, and the ladder.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include "core/ensemble/experiment_kind.h"
 #include "core/model_choice/ladder.h"
 #include "tests/core/asked.h"

@@ -1,7 +1,7 @@
 #include "core/sampling/outgoing_law.h"
 
 #include "tests/core/preamble.h"
-#include "tests/oracle/one_sample.h"
+#include "tests/oracle/samples.h"
 #include "tests/support/nightly.h"
 
 namespace ballpiston {

@@ -1,7 +1,5 @@
 #include "core/conductivity/test_function.h"
 
-#include <ostream>
-
 #include "tests/core/preamble.h"
 #include "tools/conductivity/conductivity.h"
 #include "tools/conductivity/contact_matrix.h"
@@ -12,15 +10,6 @@ namespace {
 
 using TermValues = TestFunction::Values;
 using Squares = Eigen::Matrix<double, TestFunction::kTerms, TestFunction::kTerms>;
-
-struct Case {
-  const char* name;
-  bool is_lattice;
-  TestFunction f;
-  BoundedValue correction;
-
-  friend void PrintTo(const Case& c, std::ostream* os) { *os << c.name; }
-};
 
 // Means and covariances of the functions of a body, whose energy has a Gamma law.
 struct Law {
@@ -47,10 +36,10 @@ double Contracted(const Squares& matrix, const TermValues& v) {
 // the bodies beside the pair, which are independent of it: their covariances are enough. A lattice
 // has as many contacts along y, where the ball's two neighbours along x count. The quadrature is
 // that of contact_matrix.cc.
-double BoundOf(const Case& c) {
+double BoundOf(const TestFunction& f, bool is_lattice) {
   constexpr int kNodes = 40;
-  const Law ball(1, [&](double e) { return c.f.OfBall(e); });
-  const Law piston(0.5, [&](double e) { return c.f.OfPiston(e); });
+  const Law ball(1, [&](double e) { return f.OfBall(e); });
+  const Law piston(0.5, [&](double e) { return f.OfPiston(e); });
   const GammaQuadrature t = GammaNodes(2, kNodes), y = GammaNodes(1.5, kNodes),
                         g = GammaNodes(0.5, kNodes);
   double with_f = 0, alone = 0;
@@ -60,13 +49,13 @@ double BoundOf(const Case& c) {
         const double r = std::sqrt(t.nodes[i] * y.nodes[j]);
         const double middle = (t.nodes[i] + y.nodes[j]) / 2;
         const double weight = t.weights[i] * y.weights[j] * g.weights[k] / (r * r);
-        const TermValues u = c.f.OfBall(middle + r + g.nodes[k]), w = c.f.OfPiston(middle - r);
-        const TermValues u1 = c.f.OfBall(middle - r + g.nodes[k]), w1 = c.f.OfPiston(middle + r);
+        const TermValues u = f.OfBall(middle + r + g.nodes[k]), w = f.OfPiston(middle - r);
+        const TermValues u1 = f.OfBall(middle - r + g.nodes[k]), w1 = f.OfPiston(middle + r);
         const double own = 2 * r + ((u1 - ball.mean) * (w1 - piston.mean)).sum() -
                            ((u - ball.mean) * (w - piston.mean)).sum();
         const TermValues of_ball = u1 - u, of_piston = w1 - w;
         with_f += weight * (own * own + Contracted(ball.covariance, of_piston) +
-                            (c.is_lattice ? 3 : 1) * Contracted(piston.covariance, of_ball));
+                            (is_lattice ? 3 : 1) * Contracted(piston.covariance, of_ball));
         alone += weight * 4 * r * r;
       }
     }
@@ -74,18 +63,14 @@ double BoundOf(const Case& c) {
   return with_f / alone - 1;
 }
 
-class TestFunctionTest : public testing::TestWithParam<Case> {};
-
-TEST_P(TestFunctionTest, HasItsBound) {
-  EXPECT_NEAR(BoundOf(GetParam()), GetParam().f.bound, 1e-10);
-  EXPECT_GT(GetParam().f.bound, GetParam().correction.value);
+TEST(TestFunction, HasItsBound) {
+  for (const auto& [f, is_lattice, correction] :
+       {std::tuple(kChainTestFunction, false, kChainCorrection),
+        {kLatticeTestFunction, true, kLatticeCorrection}}) {
+    EXPECT_NEAR(BoundOf(f, is_lattice), f.bound, 1e-10) << is_lattice;
+    EXPECT_GT(f.bound, correction.value) << is_lattice;
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, TestFunctionTest,
-    testing::Values(Case{"chain", false, kChainTestFunction, kChainCorrection},
-                    Case{"lattice", true, kLatticeTestFunction, kLatticeCorrection}),
-    [](const testing::TestParamInfo<Case>& tested) { return tested.param.name; });
 
 }  // namespace
 }  // namespace ballpiston

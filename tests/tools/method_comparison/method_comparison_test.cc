@@ -5,9 +5,6 @@
 namespace ballpiston::method_comparison {
 namespace {
 
-using ::testing::EndsWith;
-using ::testing::StartsWith;
-
 // The smallest comparison: it takes a few tenths of a second.
 const MethodComparisonSpec kSmallestComparison = {.rho = kPaperRho,
                                                   .delta = 0.2,
@@ -19,16 +16,13 @@ const MethodComparisonSpec kSmallestComparison = {.rho = kPaperRho,
 // Neither has samples.
 bool IsComputed(const Method& method) { return method == kClosedForm || method == kSpectrum; }
 
-std::vector<MethodMeasurement> Compare(const MethodComparisonSpec& spec) {
-  std::vector<MethodMeasurement> measurements;
-  CompareMethods(spec, [&](const MethodMeasurement& m) { measurements.push_back(m); });
-  return measurements;
-}
-
 const std::vector<MethodMeasurement>& Measurements() {
-  static const auto* const measurements =
-      new std::vector<MethodMeasurement>(Compare(kSmallestComparison));
-  return *measurements;
+  static std::vector<MethodMeasurement> measurements;
+  if (measurements.empty()) {
+    CompareMethods(kSmallestComparison,
+                   [](const MethodMeasurement& m) { measurements.push_back(m); });
+  }
+  return measurements;
 }
 
 // The limit's relaxation times, by delta.
@@ -146,12 +140,6 @@ TEST(MethodComparison, TheLimitHasABiasThatFallsWithDelta) {
   EXPECT_LT(limit[0.2].value, limit[0.3].value);
 }
 
-MethodComparisonSpec WithField(double MethodComparisonSpec::*field, double value) {
-  MethodComparisonSpec spec = kSmallestComparison;
-  spec.*field = value;
-  return spec;
-}
-
 TEST(MethodComparison, ViolationsNameFlagValueAndRange) {
   using Spec = MethodComparisonSpec;
   struct Row {
@@ -169,8 +157,9 @@ TEST(MethodComparison, ViolationsNameFlagValueAndRange) {
          "--seconds: ",
          " is not in [0.01, 60]"}}) {
     for (const double value : row.values) {
-      EXPECT_THAT(Violations(WithField(row.field, value)),
-                  ElementsAre(AllOf(StartsWith(row.begin), EndsWith(row.end))));
+      Spec spec = kSmallestComparison;
+      spec.*row.field = value;
+      EXPECT_THAT(Violations(spec), ElementsAre(AllOf(StartsWith(row.begin), EndsWith(row.end))));
     }
   }
   Spec spec = kSmallestComparison;

@@ -1,13 +1,9 @@
 // The program as a process, with the smallest budget.
 #include "tests/core/preamble.h"
-#include "tests/support/paths.h"
 #include "tests/support/process.h"
 
 namespace ballpiston::method_comparison {
 namespace {
-
-using ::testing::EndsWith;
-using ::testing::StartsWith;
 
 ProcessResult RunComparison(std::vector<std::string> flags) {
   flags.insert(flags.begin(), BuildPath("bin/method_comparison"));

@@ -1,6 +1,5 @@
 // The program as a process: rare events decide which cells are empty.
 #include "tests/core/preamble.h"
-#include "tests/support/paths.h"
 #include "tests/support/process.h"
 
 namespace ballpiston::slow_pistons {

@@ -1,13 +1,8 @@
 // The stated errors of the models against differences that were measured once, and stored.
 #include "tools/stability/model_errors.h"
 
-#include <fstream>
-
 #include "absl/strings/numbers.h"
-#include "absl/strings/str_format.h"
-#include "absl/strings/str_split.h"
 #include "tests/core/preamble.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston::stability {
 namespace {

@@ -1,7 +1,6 @@
 // The complaints find planted failures.
 #include "tools/stability/results.h"
 
-#include "tests/support/paths.h"
 #include "tests/support/preamble.h"
 #include "tests/support/process.h"
 

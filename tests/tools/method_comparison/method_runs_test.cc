@@ -1,0 +1,177 @@
+// What the methods compute: returns, relaxation times and currents, trajectories.
+#include "core/closed_form/mean_free_time.h"
+#include "tests/core/preamble.h"
+#include "tools/method_comparison/point_runs.h"
+#include "tools/method_comparison/returns.h"
+#include "tools/method_comparison/trajectory_horizon.h"
+
+namespace ballpiston::method_comparison {
+namespace {
+
+constexpr double kEpsilonOfReturns = 0.125;
+
+// The bias of the mean free time at two time steps, a factor of three apart, against the closed
+// form: about 12% and 4%, with standard errors of 0.5% and 0.4%. Therefore the standard error of
+// the measured order is 0.09. The limit is 4.5 standard errors about 1, with 7e-6 false alarms (the
+// seed is fixed). With coarser steps the ball leaves the cell through the tips.
+TEST(Returns, TimeIsBiasedToFirstOrderInTheStep) {
+  const double exact = ConditionalMeanFreeTime(kPaperPair, kEpsilonOfReturns);
+  const auto bias = [&](double step, uint64_t samples) {
+    const auto returns =
+        RunReturns(FixedSteps(step), kPaperPair, kEpsilonOfReturns, {5, 6}, samples);
+    EXPECT_EQ(returns.times.count, samples);
+    return std::fabs(returns.times.mean - exact) / exact;
+  };
+  const double coarse = bias(0.06, 1 << 15), fine = bias(0.02, 1 << 16);
+  EXPECT_GT(coarse, 0.08);
+  EXPECT_NEAR(std::log(coarse / fine) / std::log(3.0), 1, 4.5 * 0.09);
+}
+
+// The wall hits are the cost of a method, so those of orbits that it loses count.
+TEST(Returns, WallHitsOfALostOrbitCount) {
+  const auto run = [](uint64_t samples) {
+    return RunReturns(FixedSteps(0.3), kPaperPair, kEpsilonOfReturns, {5, 6}, samples);
+  };
+  uint64_t samples = 1;  // until the last one is lost
+  while (samples < 1000 && run(samples).times.count == samples) ++samples;
+  const auto without = run(samples - 1), with = run(samples);
+  ASSERT_EQ(with.times.count, without.times.count) << "no orbit was lost: take a longer step";
+  EXPECT_GT(with.wall_hits, without.wall_hits);
+}
+
+// A short orbit is the same in all precisions.
+TEST(Returns, AllMethodsStartFromTheSameStates) {
+  constexpr RandomStream kShort = {21, 214};
+  const auto reference = RunReturns(kReference, kPaperPair, kEpsilonOfReturns, kShort, 1);
+  ASSERT_GT(reference.wall_hits, 0) << "choose another stream";
+  ASSERT_LT(reference.wall_hits, 8) << "choose another stream";
+  for (const Method& method :
+       {kReferenceSingle, kReferenceLongDouble, kReferenceQuadruple, kLanes, kLanesSingle}) {
+    const auto one = RunReturns(method, kPaperPair, kEpsilonOfReturns, kShort, 1);
+    EXPECT_NEAR(one.times.mean, reference.times.mean, 1e-3) << method.name;
+    EXPECT_EQ(one.wall_hits, reference.wall_hits) << method.name;
+  }
+}
+
+// ---- point_runs.h ----
+
+const Method kSmallSteps = FixedSteps(2e-3);
+
+EnergyRelaxationRuns Relaxation(double delta) { return {PaperGeometry(delta), 5}; }
+HeatCurrentRuns HeatCurrent(double delta) { return {kPaperRho, delta, 7}; }
+
+template <typename Runs>
+void ExpectRunsHaveTheRequestedSamples(const Runs& runs, const Method& method, uint64_t samples) {
+  const PointEstimate first = runs.Run(method, samples);
+  EXPECT_EQ(first.samples, samples);
+  EXPECT_GT(first.seconds, 0);
+  EXPECT_EQ(runs.Run(method, samples).value, first.value);
+}
+
+TEST(PointRuns, RunsHaveTheRequestedSamplesAndTheSameValueEachTime) {
+  for (const Method& method : {kLanes, kMarkov}) {
+    ExpectRunsHaveTheRequestedSamples(Relaxation(0.2), method, 64);
+  }
+  for (const Method& method : {kLanes, kReference, kMarkov}) {
+    ExpectRunsHaveTheRequestedSamples(HeatCurrent(0.2), method, 256);
+  }
+  ExpectRunsHaveTheRequestedSamples(HeatCurrent(0.2), kSmallSteps, 16);
+}
+
+TEST(PointRuns, TheTruthHasOtherSamplesThanARun) {
+  EXPECT_NE(Relaxation(0.2).Truth(512).value, Relaxation(0.2).Run(kLanes, 512).value);
+  EXPECT_NE(HeatCurrent(0.2).Truth(512).value, HeatCurrent(0.2).Run(kLanes, 512).value);
+}
+
+// A difference of four combined standard errors has 6e-5 false alarms, and the seed is fixed. The
+// errors are about 4 %. Small time steps have a bias of 2 %, the limit of 5 %.
+TEST(HeatCurrentRuns, AllMethodsAgree) {
+  const HeatCurrentRuns runs = HeatCurrent(0.2);
+  const PointEstimate reference = runs.Run(kReference, 8192);
+  EXPECT_LT(reference.error, 0.06 * reference.value);
+  for (const auto& [method, samples] : std::vector<std::pair<Method, uint64_t>>{
+           {kLanes, 8192}, {kSmallSteps, 64}, {kMarkov, 8192}}) {
+    const PointEstimate other = runs.Run(method, samples);
+    EXPECT_GT(other.error, 0);
+    EXPECT_LT(std::fabs(other.value - reference.value),
+              4 * std::hypot(other.error, reference.error))
+        << method.name;
+  }
+}
+
+// With steps of 0.1 a ball crosses a cell in a few steps: all replicas lose their ball.
+TEST(HeatCurrentRuns, ReplicasThatLoseABallAreNotCounted) {
+  const PointEstimate run = HeatCurrent(0.2).Run(FixedSteps(0.1), 64);
+  EXPECT_EQ(run.samples, 0u);
+  EXPECT_GT(run.seconds, 0);
+}
+
+// ---- trajectory_horizon.h ----
+
+constexpr RandomStream kStreamOfTwins = {31, 7};
+constexpr size_t kTwins = 64;
+
+// The ball's Lyapunov exponent per hit, from the growth of a displacement of 1e-60, which stays
+// small.
+Moments LyapunovExponents() {
+  constexpr int kHits = 60;
+  const TwinOrbits twins(kPaperPair, {32, 7}, kTwins);
+  Moments exponents;
+  for (size_t i = 0; i < kTwins; ++i) {
+    TwinOrbits::State displaced = twins.Start(i);
+    const TwinNumber angle("1e-60");
+    const TwinNumber x = displaced.direction.x(), y = displaced.direction.y();
+    displaced.direction = {TwinNumber(x - angle * y), TwinNumber(y + angle * x)};
+    EventFlow<TwinNumber> one(kPaperPair, twins.Start(i)), other(kPaperPair, displaced);
+    for (int hit = 0; hit < kHits; ++hit) {
+      one.Step();
+      other.Step();
+    }
+    const PairStateOf<TwinNumber>::Vector apart = other.state().direction - one.state().direction;
+    const double ratio = static_cast<double>(TwinNumber(apart.norm() / angle));
+    exponents.Add(std::log(ratio) / kHits);
+  }
+  return exponents;
+}
+
+TrajectoryHorizon HorizonOfMethod(const Method& method) {
+  TwinOrbits twins(kPaperPair, kStreamOfTwins, kTwins);
+  return HorizonOf(method, kPaperPair, twins);
+}
+
+double CombinedError(const Moments& a, const Moments& b) {
+  return std::hypot(*a.StandardError(), *b.StandardError());
+}
+
+// Each precision against the next: H' - H = (bits' - bits) log 2/L, with a separate measurement of
+// L. Three comparisons at 4.5 combined standard errors, with a fixed seed; one in 5e4 seeds would
+// fail.
+TEST(TrajectoryHorizon, HorizonGrowsWithTheLogarithmOfThePrecision) {
+  const Moments exponents = LyapunovExponents();
+  const double error_of_exponent = *exponents.StandardError() / exponents.mean;
+  Moments before = HorizonOfMethod(kReferenceSingle).hits;
+  int bits_before = 24;
+  for (const auto& [method, bits] :
+       {std::pair{kReference, 53}, {kReferenceLongDouble, 64}, {kReferenceQuadruple, 113}}) {
+    const Moments now = HorizonOfMethod(method).hits;
+    const double expected = (bits - bits_before) * std::numbers::ln2 / exponents.mean;
+    EXPECT_NEAR(now.mean - before.mean, expected,
+                4.5 * std::hypot(CombinedError(now, before), expected * error_of_exponent))
+        << bits << " bits";
+    before = now;
+    bits_before = bits;
+  }
+}
+
+// A relative error of 1e-16 gives about 32 hits.
+TEST(TrajectoryHorizon, LanesPartAfterAsManyHitsAsTheReference) {
+  const Moments reference = HorizonOfMethod(kReference).hits, lanes = HorizonOfMethod(kLanes).hits;
+  EXPECT_NEAR(reference.mean, 32, 2);
+  EXPECT_NEAR(lanes.mean, reference.mean, 1 + 4.5 * CombinedError(lanes, reference));
+  const Moments single = HorizonOfMethod(kReferenceSingle).hits,
+                lanes_single = HorizonOfMethod(kLanesSingle).hits;
+  EXPECT_NEAR(lanes_single.mean, single.mean, 1 + 4.5 * CombinedError(lanes_single, single));
+}
+
+}  // namespace
+}  // namespace ballpiston::method_comparison
