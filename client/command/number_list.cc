@@ -62,13 +62,15 @@ struct Range {
     const auto step = static_cast<double>(i);
     if (i == 0) return from;
     if (i == count - 1) return to;
+    // The ratio of the ends may be beyond the range of a double.
+    const double share = step / steps;
     return *ToNumber(logarithmic
-                         ? absl::StrFormat("%.12g", from * std::pow(to / from, step / steps))
+                         ? absl::StrFormat("%.12g", std::pow(from, 1 - share) * std::pow(to, share))
                          : absl::StrFormat("%.15g", ((steps - step) * from + step * to) / steps));
   }
 };
 
-constexpr double kLargest = 1e100;
+constexpr double kLargest = 1e150;
 constexpr char kRangeForm[] = "is not a range: write FROM:TO:COUNT or FROM:TO:COUNT:log";
 
 absl::StatusOr<Range> ParseRange(absl::string_view text) {
@@ -92,9 +94,9 @@ absl::StatusOr<Range> ParseRange(absl::string_view text) {
   if (logarithmic && (*from <= 0 || *to <= 0)) {
     return Bad(text, "is logarithmic: both ends must be above 0");
   }
-  // The ends times the count, and the ratio of the ends, must stay finite.
+  // The ends times the count must stay finite.
   if (std::abs(*from) > kLargest || std::abs(*to) > kLargest) {
-    return Bad(text, "has an end beyond 1e100");
+    return Bad(text, "has an end beyond 1e150");
   }
   return Range{*from, *to, *count, logarithmic};
 }

@@ -214,12 +214,22 @@ class FirstHitExperiment : public ReturnExperiment {
       const int sigma = kIngoingSigmas[summary.histograms.size()];
       summary.histograms.push_back({"alpha", sigma, histogram});
     }
-    const bool has_long_returns = starts().epsilon > 0;
-    summary.curves = {SurvivalCurve(merged.histograms.back(), has_long_returns ? events() : 1)};
+    summary.curves = {Survival(merged.histograms.back())};
     if (merged.samples > 0) AddDistanceFromEquilibrium(merged, summary);
   }
 
  private:
+  // While all energy is in the ball or in the piston, the other rests where it is until they meet,
+  // and the law is not exponential.
+  Curve Survival(const Histogram& times) const {
+    const double epsilon = starts().epsilon;
+    const bool has_long_returns = epsilon > 0;
+    Curve survival = SurvivalCurve(times, exact_mean(), has_long_returns ? events() : 1);
+    if (epsilon > 0 && epsilon < 0.5) return survival;
+    for (CurvePoint& point : survival.points) point.limit.reset();
+    return survival;
+  }
+
   bool PistonIsSlower() const { return equilibrium_.AlphaMax(+1) > 0; }
 
   // From a large exponent the ball starts along the axis, and while a slow piston hardly moves,

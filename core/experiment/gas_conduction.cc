@@ -296,9 +296,12 @@ class GasConduction : public SteadyGas {
   double Columns() const { return static_cast<double>(geometry().shape().columns); }
   double Rows() const { return static_cast<double>(geometry().shape().rows); }
 
-  // The conductivity over the current at mean temperature 1.
+  // The conductivity over the current at mean temperature 1. The fall, 2/3 of the difference of the
+  // temperatures' powers 3/2, keeps its digits when they are nearly equal.
   double Conductance() const {
-    const double fall = 2.0 / 3 * (hot() * std::sqrt(hot()) - cold() * std::sqrt(cold()));
+    const double difference = (parameters()[kHot] - parameters()[kCold]) / temperature();
+    const double fall = 2.0 / 3 * difference * (hot() + std::sqrt(hot() * cold()) + cold()) /
+                        (std::sqrt(hot()) + std::sqrt(cold()));
     return Columns() * std::sqrt(temperature()) / fall;
   }
 

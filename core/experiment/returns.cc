@@ -66,14 +66,14 @@ Histogram EmptyReturnTimes(double mean) {
   return Histogram::OfBins(0, WithoutLastBits(kReturnTimeMeans * mean), kReturnTimeBins);
 }
 
-Curve SurvivalCurve(const Histogram& return_times, double events_per_sample) {
+Curve SurvivalCurve(const Histogram& return_times, double mean, double events_per_sample) {
   Curve curve = {.name = "survival"};
   const auto samples = static_cast<double>(return_times.Total());
   if (samples == 0) return curve;
   double later = samples;
   for (size_t bin = 0; bin < kReturnTimeBins; ++bin) {
     const double share = later / samples;
-    const double limit = std::exp(-kReturnTimeMeans / kReturnTimeBins * static_cast<double>(bin));
+    const double limit = std::exp(-return_times.Edge(bin) / mean);
     const double events = samples * std::min(limit * (1 - limit), events_per_sample);
     // Half a count more: a share of 0 or 1 among few long returns is not exact.
     const double expected = (later + 0.5) / (samples + 1);

@@ -79,8 +79,9 @@ inline constexpr double kReturnTimeMeans = 8;  // upper end of the bins, in mean
 // `mean`: the mean return time at this energy.
 Histogram EmptyReturnTimes(double mean);
 
-// The points are at the lower edges of the bins. The errors are binomial; a point has one if
-// enough earlier and later returns are expected in the limit, and enough events of the mean time.
-Curve SurvivalCurve(const Histogram& return_times, double events_per_sample = 1);
+// The points are at the lower edges of the bins. The limit is the exponential law of this mean. The
+// errors are binomial; a point has one if enough earlier and later returns are expected in the
+// limit, and enough events of the mean time.
+Curve SurvivalCurve(const Histogram& return_times, double mean, double events_per_sample = 1);
 
 }  // namespace ballpiston

@@ -155,10 +155,10 @@ def _range(first: float, last: float, count: int, is_logarithmic: bool) -> list[
     if steps == 0:
         return [first]
     if is_logarithmic:
-        # Rounded, because C libraries differ in the last bits of a power.
-        inner = [
-            float(f"{first * math.pow(last / first, i / steps):.12g}") for i in range(1, steps)
-        ]
+        # Rounded, because C libraries differ in the last bits of a power. The ratio of the ends may
+        # be beyond the range of a float.
+        powers = (math.pow(first, 1 - i / steps) * math.pow(last, i / steps) for i in range(1, steps))
+        inner = [float(f"{power:.12g}") for power in powers]
     else:
         inner = [float(f"{((steps - i) * first + i * last) / steps:.15g}") for i in range(1, steps)]
     return [first, *inner, last]

@@ -40,6 +40,14 @@ TEST(GasConduction, EstimatesFollowFromTheCurrent) {
   }
 }
 
+// The conductivity tends to N J/(hot - cold), and loses no digits there.
+TEST(GasConduction, TemperaturesMayBeNearlyEqual) {
+  const double difference = std::ldexp(1, -40);
+  const PointSummary summary = RunPoint(SpecBetween(1 + difference, 1, {2}, Model::kMarkov));
+  const double expected = 2 * summary.estimates[0].value / difference;
+  EXPECT_NEAR(summary.estimates[1].value / expected, 1, 1e-11);
+}
+
 // The same replicas seen at other temperatures, to rounding: they are 4 times as high.
 TEST(GasConduction, AllScalesWithTheTemperatures) {
   const BlockResult merged = FoldPoint(*PointExperiment::Create(SpecBetween(3, 1), 0));

@@ -32,7 +32,7 @@ TEST(ReturnOrbit, AnEscapedOrbitCountsAsAnEscapeOnly) {
 TEST(ReturnTimes, AShareOfZeroHasAnError) {
   Histogram times = EmptyReturnTimes(1);
   for (int i = 0; i < 1000; ++i) times.Add(0.05);
-  const CurvePoint later = SurvivalCurve(times).points[kReturnTimeBins / 8];
+  const CurvePoint later = SurvivalCurve(times, 1).points[kReturnTimeBins / 8];
   EXPECT_EQ(later.value, 0);
   EXPECT_NEAR(*later.standard_error, std::sqrt(0.5) / 1000, 1e-6);
 }
@@ -41,7 +41,7 @@ TEST(ReturnTimes, SurvivalIsTheShareOfLaterHits) {
   Histogram times = EmptyReturnTimes(1);
   for (int i = 0; i < 300; ++i) times.Add(0.05);
   for (int i = 0; i < 100; ++i) times.Add(100);
-  const Curve curve = SurvivalCurve(times);
+  const Curve curve = SurvivalCurve(times, 1);
   constexpr double kShare = 100.5 / 401;  // for the error
   ASSERT_EQ(curve.points.size(), kReturnTimeBins);
   EXPECT_EQ(curve.points[0].value, 1);
@@ -55,6 +55,14 @@ TEST(ReturnTimes, SurvivalIsTheShareOfLaterHits) {
     ASSERT_EQ(curve.points[i].standard_error.has_value(), 400 * limit * (1 - limit) >= 50) << i;
     if (!curve.points[i].standard_error) continue;
     EXPECT_NEAR(*curve.points[i].standard_error, std::sqrt(kShare * (1 - kShare) / 400), 1e-15);
+  }
+}
+
+TEST(ReturnTimes, HaveNoLimitWhereTheirLawIsNotExponential) {
+  for (const double epsilon : {0.0, 0.125, 0.5}) {
+    const PointSummary summary = RunPoint(
+        SpecOf(&kFirstHit, PaperPoint(0.2, epsilon, 1), {.samples = 64}, Model::kBilliard));
+    EXPECT_EQ(summary.curves[0].points[1].limit.has_value(), epsilon == 0.125);
   }
 }
 
