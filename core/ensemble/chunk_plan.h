@@ -6,8 +6,8 @@
 // takes a few milliseconds or is 64 samples, whichever is more. So a computation of 10 ms ends
 // after about 10 ms, and the tolerance of a computation of hours is judged at most a few hundred
 // times. A computation that ends when its error is small enough tends to state too small an error.
-// With many samples it hardly does, because their number about doubles from one judgement to the
-// next; few trajectories are judged later (PointExperiment::ReachesTolerance).
+// With many samples the bias is small, because their number about doubles from one judgement to the
+// next. With few trajectories the first judgement is later (PointExperiment::ReachesTolerance).
 //
 // If 64 samples take more than a minute, all chunks have fewer samples: as many as take a minute,
 // or one. A tolerance is then judged after each 64 samples.

@@ -115,8 +115,9 @@ double RelativeError(const Estimate& estimate) {
 }
 
 // A value that is many times too large by chance, such as that of a current between nearly equal
-// temperatures, has a small relative error. So a tolerance is not judged with few samples. The
-// scatter of few trajectories is small by chance more often, so theirs is judged later.
+// temperatures, has a small relative error. So a tolerance is not judged with few samples.
+// With few trajectories the scatter is more often small by chance, so the tolerance is judged only
+// from the expected number of samples on.
 bool PointExperiment::ReachesTolerance(const BlockResult& merged) const {
   constexpr uint64_t kFewTrajectories = 32;
   const bool has_few = plan_.groups() > 0 && plan_.SamplesOfAStep() <= kFewTrajectories;

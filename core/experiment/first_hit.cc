@@ -219,8 +219,8 @@ class FirstHitExperiment : public ReturnExperiment {
   }
 
  private:
-  // While all energy is in the ball or in the piston, the other rests where it is until they meet,
-  // and the law is not exponential.
+  // If the ball or the piston has all the energy, the other rests until they meet, so the law is
+  // not exponential.
   Curve Survival(const Histogram& times) const {
     const double epsilon = starts().epsilon;
     const bool has_long_returns = epsilon > 0;

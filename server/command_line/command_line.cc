@@ -40,7 +40,7 @@ constexpr double kLeastDays = 1e-3, kLeastStoreBytes = 1e6;
 constexpr int64_t kMostSlurmMinutes = 60 * 24 * 365;
 constexpr int64_t kMostSlurmWorkers = 1'000'000;
 
-// Instead of a default that depends on the machine: --help also makes the page of man.
+// Shown instead of a default that depends on the machine, because the man page is made from --help.
 constexpr char kOfThisMachine[] = "";
 
 // Values of flags that are converted after all flags were read.
@@ -244,8 +244,8 @@ void AddLimitFlags(CLI::App& app, Limits& limits) {
   add("--retain-days", limits.retain_days,
       "days from the end of a job until its results expire, unless it is pinned", kLeastDays);
   add("--max-store-bytes", limits.max_store_bytes,
-      "bytes of the store; above 95 % results expire: the oldest of the principal that stores\n"
-      "most; if none are left, the oldest expired jobs are deleted",
+      "bytes of the store; above 95 % the oldest results of the principal that stores most\n"
+      "expire; if it has none left, its oldest expired jobs are deleted",
       kLeastStoreBytes);
 }
 

@@ -217,8 +217,9 @@ uint64_t Run::Merge(const Lease& lease, OpenPoint& open, LeaseReport report) {
 
 // Blocks that have begun are awaited: without them short orbits would be preferred, because a block
 // of long ones is more likely to be in progress at the end. A lease normally has all the rest of
-// its point, but not on a server with a cluster, where such blocks are dropped. Trajectories end
-// with all of their first stage at least: an error needs several groups.
+// its point, but not on a server with a cluster, where such blocks are dropped. Blocks of
+// trajectories are not awaited, because their time does not depend on what happens in them. But a
+// point computes its whole first stage, because an error needs several groups.
 void Run::EndIfBudgetIsSpent(const Lease& lease, OpenPoint& open, uint64_t begun) {
   if (!spec_->target.budget_seconds || open.work < BudgetOfAPoint(*spec_, workers_)) return;
   const ChunkPlan& plan = open.experiment()->plan();

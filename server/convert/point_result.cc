@@ -34,7 +34,7 @@ void AddEstimate(const Estimate& estimate, const Answer& answer, bool first,
   if (const auto z = estimate.ZScore(); Exists(z)) message.set_z_score(*z);
   if (Exists(estimate.noise_floor)) message.set_noise_floor(*estimate.noise_floor);
   if (Exists(estimate.limit)) message.set_limit(*estimate.limit);
-  const bool is_closed_form = estimate.exact == estimate.value;
+  const bool is_closed_form = !TakesSamples(answer.model) && estimate.exact == estimate.value;
   const std::optional<double> relative =
       is_closed_form ? 0 : answer.ModelErrorOf(estimate.name, first);
   if (relative) message.set_model_error(*relative * std::fabs(estimate.value));

@@ -1,6 +1,6 @@
 // Tests whether a sample is from a known law, and whether two samples are from the same law: two
-// classical tests, whose results are small if they are. Samples must be independent, also of each
-// other.
+// classical tests, whose results are small if the laws are equal. Samples must be independent, also
+// of each other.
 #pragma once
 
 #include "tests/support/preamble.h"

@@ -157,7 +157,8 @@ def _range(first: float, last: float, count: int, is_logarithmic: bool) -> list[
     if is_logarithmic:
         # Rounded, because C libraries differ in the last bits of a power. The ratio of the ends may
         # be beyond the range of a float.
-        powers = (math.pow(first, 1 - i / steps) * math.pow(last, i / steps) for i in range(1, steps))
+        shares = [i / steps for i in range(1, steps)]
+        powers = [math.pow(first, 1 - share) * math.pow(last, share) for share in shares]
         inner = [float(f"{power:.12g}") for power in powers]
     else:
         inner = [float(f"{((steps - i) * first + i * last) / steps:.15g}") for i in range(1, steps)]

@@ -125,6 +125,7 @@ TEST(JobList, ControlCharactersOfALabelAreEscapedInTheTable) {
 
 TEST(JobList, TheTableShowsTheExpiryOfResults) {
   EXPECT_EQ(ResultsColumn("pinned: true"), "pinned");
+  EXPECT_EQ(ResultsColumn("pinned: true " + Expiring(absl::Hours(1))), "pinned");
   const std::pair<absl::Duration, std::string> table[] = {
       {absl::Hours(24 * 7), "expires in 7 days"},    {absl::Hours(24 * 4 - 1), "expires in 3 days"},
       {absl::Hours(47), "expires in 1 day"},         {absl::Hours(24), "expires in 1 day"},

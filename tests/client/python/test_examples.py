@@ -39,6 +39,7 @@ def test_the_sweep_prints_a_table_and_saves_its_result(tmp_path: Path) -> None:
 
 
 NOTEBOOKS = sorted(path.name for path in EXAMPLES.glob("*.ipynb"))
+assert NOTEBOOKS
 
 
 def text_of(cell: dict[str, Any]) -> str:

@@ -34,6 +34,7 @@ def test_texts_are_lists_of_the_command_line() -> None:
     assert list(grid(epsilon="0.01:0.49:49").epsilon) == fractions
     assert list(grid(delta="0.1,0.2:0.3:2").delta) == [0.1, 0.2, 0.3]
     assert list(grid(delta="0.01:1:3:log").delta) == pytest.approx([0.01, 0.1, 1])
+    assert list(grid(epsilon="1e-309:0.1:3:log").epsilon) == [1e-309, 1e-155, 0.1]
 
 
 def test_shapes_are_numbers_or_texts() -> None:

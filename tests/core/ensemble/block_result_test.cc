@@ -53,7 +53,7 @@ struct Change {
   bool of_shape = false;
 };
 
-// The comparison of numbers is the language's own. Only that of a group's state is written here.
+// Numbers are compared by defaulted operators; only GroupState has its own.
 const Change kChanges[] = {
     {"a bin", [](BlockResult& r) { r.histograms[0].counts[2] += 1; }},
     {"a group's state",

@@ -41,7 +41,7 @@ TEST(GasConduction, EstimatesFollowFromTheCurrent) {
 }
 
 // The conductivity tends to N J/(hot - cold), and loses no digits there.
-TEST(GasConduction, TemperaturesMayBeNearlyEqual) {
+TEST(GasConduction, ConductivityKeepsItsDigitsBetweenNearlyEqualTemperatures) {
   constexpr double kHotter = 1 + 1e-9;
   const PointSummary summary = RunPoint(SpecBetween(kHotter, 1, {2}, Model::kMarkov));
   const double expected = 2 * summary.estimates[0].value / (kHotter - 1);

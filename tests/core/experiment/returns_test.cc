@@ -58,7 +58,7 @@ TEST(ReturnTimes, SurvivalIsTheShareOfLaterHits) {
   }
 }
 
-TEST(ReturnTimes, HaveNoLimitWhereTheirLawIsNotExponential) {
+TEST(ReturnTimes, OnlyAnExponentialLawHasALimit) {
   for (const double epsilon : {0.0, 0.125, 0.5}) {
     const PointSummary summary = RunPoint(
         SpecOf(&kFirstHit, PaperPoint(0.2, epsilon, 1), {.samples = 64}, Model::kBilliard));

@@ -12,6 +12,7 @@ TEST(Errors, HaveTheLastArgumentInTheMetadata) {
   const grpc::Status status = GrpcStatus(JobAlreadyEnded("ensembleJobs/$1", "FAILED"));
   EXPECT_THAT(status, StatusIs(grpc::StatusCode::FAILED_PRECONDITION,
                                "ensembleJobs/$1 has ended already: it is FAILED"));
+  EXPECT_EQ(DetailsOf(status).domain, "ballpiston");
   EXPECT_EQ(DetailsOf(status).metadata.at("state"), "FAILED");
   EXPECT_EQ(DetailsOf(GrpcStatus(ShuttingDown())).metadata.size(), 0u);
 }

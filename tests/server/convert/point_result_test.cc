@@ -73,10 +73,9 @@ TEST(PointResult, LimitsNoiseFloorsCurvesAndRemarksAreKept) {
             R"(points { value: 1 position: 1.5 } })");
 }
 
-TEST(PointResult, ARemarkNamesTheEstimatesWhoseModelErrorIsUnknownAndAreNoClosedForms) {
-  const EnsembleSpec spec =
-      SpecOf(&kEnergyRelaxation, PaperPoint(0.2), {.samples = 64}, Model::kMarkov);
-  const auto experiment = PointExperiment::Create(spec, 0, {Model::kMarkov, "", std::nullopt});
+TEST(PointResult, ClosedFormsHaveModelErrorZeroAndARemarkNamesTheUnknownOnes) {
+  const EnsembleSpec spec = SpecOf(&kEnergyRelaxation, PaperPoint(0.2), {}, Model::kSpectrum);
+  const auto experiment = PointExperiment::Create(spec, 0, {Model::kSpectrum, "", std::nullopt});
   PointSummary summary;
   summary.estimates = {{.name = "time", .value = 1, .exact = 2},
                        {.name = "mean", .value = 3, .exact = 3}};

@@ -59,6 +59,7 @@ TEST(Loopback, TheOwnTokenIsThatOfTheServersUserAndEndsWithTheServer) {
     std::getline(std::ifstream(file), first);
     EXPECT_OK(CallByName(server.channel(), kListJobs, "", Bearer(first)));
     EXPECT_EQ(ReasonOf(CallByName(server.channel(), kListJobs)), "CREDENTIALS_MISSING");
+    EXPECT_OK(CallByName(server.channel(), kCheckHealth));
   }
   EXPECT_TRUE(std::filesystem::is_empty(data.path() + "/tokens"));
   RunningServer server(options);
