@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import ballpiston
-from ballpiston.figures import full_counting, logarithm, lyapunov
+from ballpiston.figures import full_counting, logarithm, lyapunov, slow_pistons
 from ballpiston.figures.parts import charge, fits, tangent_growth
 
 
@@ -96,12 +96,26 @@ def test_cumulants_that_were_not_measured_are_drawn_as_such() -> None:
     order = np.array([1.0, 1, 1, 1, 2, 2, 2])
     cells = np.array([4.0, 6, 8, 12, 4, 4, 6])  # the variance has only two chains
     found = {"cells": cells, "order": order, "time": np.full(7, np.inf)}
-    found |= {"value": np.ones(7), "standard_error": np.full(7, 0.01)}
+    found |= {"value": np.full(7, 2.0), "standard_error": np.full(7, 0.01)}
     fits_of_orders = full_counting.extrapolated(found, 1.5, 0.5)
     assert np.isnan(fits_of_orders["a0"]).tolist() == [False, True, True, True]
     tables = {"full-counting": found, "full-counting-limits": fits_of_orders}
-    texts = [text.get_text() for axes in full_counting.draw(tables).axes for text in axes.texts]
+    panels = full_counting.draw(tables).axes
+    texts = [text.get_text() for axes in panels for text in axes.texts]
     assert texts == ["not measured: too few collisions"] * 2
+    assert panels[0].get_ylim()[1] > 2  # includes the points
+
+
+def test_growths_that_were_not_measured_are_drawn_as_such(
+    client: ballpiston.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    idle = {"time": np.full(2, 64.0), "limit": np.ones(2), "limit_error": np.full(2, 0.1)}
+    monkeypatch.setattr(slow_pistons, "table_of", lambda *_, **__: idle)
+    tables = slow_pistons.measure(client, delta=0.2, cold=0.1, samples=10)
+    assert np.isnan(tables["slow-pistons"]["growth"]).all()
+    panels = slow_pistons.draw(tables).axes
+    texts = [text.get_text() for axes in panels for text in axes.texts]
+    assert texts == ["not measured: too few samples"] * 2
 
 
 def test_the_noise_near_equilibrium_is_that_of_equilibrium() -> None:
@@ -157,19 +171,22 @@ def test_growth_without_an_error_is_left_out() -> None:
 def test_a_single_rare_delta_has_two_orbits_and_one_place_in_the_picture(
     client: ballpiston.Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked: dict[str, Any] = {}
+    asked: list[dict[str, Any]] = []
 
     def windows(program: str, command: str, **flags: Any) -> dict[str, Any]:
-        asked.update(flags)
+        asked.append(flags)
         values = [f"{kind}{part}" for kind in ("", "later_") for part in logarithm.PARTS]
         names = (*values, *(f"{name}_error" for name in values), "limit_all", "limit_idle")
         return {"window": 8 * 2.0 ** np.arange(5)} | {name: np.ones(5) for name in names}
 
     monkeypatch.setattr(logarithm, "table_of", windows)
     figure = logarithm.draw(logarithm.measure(client, rho=0.7, delta=0.004, samples=300))
-    assert asked["orbits"] == 2
+    assert asked[0]["orbits"] == 2
     bars = figure.axes[1].containers
+    assert figure.axes[1].get_ylim()[1] > 100  # includes the bars
     assert len(bars) == 3 and len({bar.lines[0].get_xdata()[0] for bar in bars}) == 1
+    logarithm.measure(client, rho=0.7, delta="0.004,0.003", samples=300)
+    assert asked[-1]["seed"] != asked[-2]["seed"]  # so that their runs are independent
 
 
 # The second Lyapunov exponent
@@ -257,4 +274,7 @@ def test_the_computed_curve_ends_at_the_largest_delta(
     deltas = tables["lyapunov-curve"]["delta"]
     assert deltas[-1] == pytest.approx((1 - np.sqrt(4 * rho**2 - 1)) / 2, rel=1e-12)
     assert (np.diff(deltas) > 0).all()
+    # The first two are 0.0036 apart in the law, and have the same random numbers.
+    computed = (tables["lyapunov-curve"]["computed"] - np.log(tables["lyapunov-curve"]["tau"]))[:2]
+    assert abs(np.diff(computed)) < 0.03
     lyapunov.draw(tables)

@@ -160,5 +160,6 @@ def _draw_cumulant(axes: Any, part: Table, fit: Table) -> None:
     style.error_points(axes, share, value, error, style.BLUE)
     end = {"color": style.GREEN, "label": "N → ∞"}
     style.error_points(axes, [0], fit["a0"] / limit, fit["standard_error"] / limit, **end)
-    axes.set(xlim=(-0.02 * x[-1], x[-1]), ylim=(0.85, 1.3))
+    axes.set_xlim(-0.02 * x[-1], x[-1])
+    style.widen(axes, 0.85, 1.3)
     axes.legend()

@@ -49,7 +49,7 @@ def measure(
 
 def merge(bins: Table, merged: int) -> Table:
     """Histograms with `merged` neighbouring bins in one. Densities are means over a bin; `error` is
-    the standard error."""
+    the standard error; that of an empty bin is from the exact law."""
     keys = ("delta", "epsilon", "exponent", "sigma")
     found = distinct(zip(*(bins[name] for name in keys)))
     return stacked(_merged(rows(bins, **dict(zip(keys, key))), keys, merged) for key in found)
@@ -61,11 +61,13 @@ def _merged(bins: Table, keys: tuple[str, ...], merged: int) -> Table:
     sizes = ends - starts + 1
     lower, upper = bins["lower"][starts], bins["upper"][ends]
     counts = np.add.reduceat(bins["count"], starts)
+    exact = np.add.reduceat(bins["exact_density"], starts) / sizes
+    total = bins["samples"][0] * (upper - lower)  # the count at the density 1
     return {name: bins[name][starts] for name in keys} | {
         "alpha": (lower + upper) / 2,
         "density": np.add.reduceat(bins["density"], starts) / sizes,
-        "error": np.sqrt(counts) / (bins["samples"][0] * (upper - lower)),
-        "exact_density": np.add.reduceat(bins["exact_density"], starts) / sizes,
+        "error": np.sqrt(np.where(counts > 0, counts, exact * total)) / total,
+        "exact_density": exact,
     }
 
 

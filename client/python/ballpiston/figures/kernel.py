@@ -53,9 +53,7 @@ def measure(
         }
         for energy, rate, kernel in zip(energies, forms["f"][0], forms["kernel"][0])
     ]
-    collisions = np.concatenate(
-        [_collisions(client, rho, delta, seed + k) for k in range(orbits)]
-    )
+    collisions = np.concatenate([_collisions(client, rho, delta, seed + k) for k in range(orbits)])
     return {
         "kernel-exact": stacked(exact),
         "kernel-measured": densities(energies, collisions, bins),
@@ -76,10 +74,8 @@ def densities(energies: Iterable[float], collisions: FloatArray, bins: int) -> T
     The bins have equal widths in u = sqrt(2 epsilon) after the collision, because the density of u
     is finite at 0. They end four windows below the largest outgoing energy, 1/2 - epsilon, where W
     diverges: nearer to it, the mean over a window is above W by more than 2 %. Energies without a
-    collision or without a bin are left out."""
-    return stacked(
-        part for energy in energies if (part := _densities_at(energy, collisions, bins))
-    )
+    collision or without a bin are left out. An empty bin has the error of one collision."""
+    return stacked(part for energy in energies if (part := _densities_at(energy, collisions, bins)))
 
 
 def _densities_at(energy: float, collisions: FloatArray, bins: int) -> dict[str, Any]:
@@ -96,7 +92,7 @@ def _densities_at(energy: float, collisions: FloatArray, bins: int) -> dict[str,
         "epsilon": energy,
         "outgoing": u**2 / 2,
         "density": counts / scale,
-        "standard_error": np.sqrt(counts) / scale,
+        "standard_error": np.sqrt(np.maximum(counts, 1)) / scale,
         "count": counts,
         "samples": len(chosen),
     }

@@ -32,6 +32,7 @@ EFFORT = {
 }
 
 _BATCHES = 8  # of each orbit; their scatter gives the standard errors
+_FEWEST_GAPS = 50  # for which an error is stated
 _HALF_WIDTH = 0.02  # a conditional rate is the rate at all energies within epsilon +- half_width
 _ENERGIES = 20  # the exact conditional rate is averaged over this number of energies
 _LENGTHS = 1e-4 * 10 ** (np.arange(17) / 4)  # of the windows, in units of the mean free time
@@ -62,6 +63,8 @@ def measure(
 ) -> Tables:
     """The rates P(t)/t of each kind of events. The first orbit has the seed `seed`, the next ones
     have the next seeds."""
+    if events < _BATCHES:
+        raise ValueError(f"events is {events}; permitted: {_BATCHES} to 1000000")
     kinds = _kinds(client, rho, delta, epsilon)
     batches: dict[Kind, list[FloatArray]] = {kind: [] for kind in kinds}
     names = ("time", "event", "piston_energy_before")
@@ -69,8 +72,7 @@ def measure(
         orbit = client.trace_arrays(*names, rho=rho, delta=delta, seed=seed + k, events=events)
         for kind, found in batches.items():
             found += batches_of_gaps(orbit, kind)
-    measured = {kind: found for kind, found in batches.items() if any(map(len, found))}
-    return {"rates": stacked(_rates(kind, found) for kind, found in measured.items())}
+    return {"rates": stacked(_rates(kind, found) for kind, found in batches.items())}
 
 
 def _kinds(client: Client, rho: float, delta: float, epsilon: Numbers) -> list[Kind]:
@@ -117,14 +119,17 @@ def rate_of_windows(
 
     A window of length t that begins at a uniformly random time contains an event with the
     probability P(t), the sum of min(gap, t) over the gaps between events, divided by the sum of the
-    gaps. The standard error is that of a ratio of sums over batches. All t use the same gaps: their
-    errors are not independent."""
+    gaps. The standard error is that of a ratio of sums over batches; it is NaN for fewer than
+    _FEWEST_GAPS gaps. All t use the same gaps: their errors are not independent. Without a gap the
+    value is NaN, too."""
     hits = np.array([[np.minimum(gaps, t).sum() for t in lengths] for gaps in batches])
     times = np.array([gaps.sum() for gaps in batches])
-    probability = hits.sum(axis=0) / times.sum()
+    total = times.sum() or np.nan
+    probability = hits.sum(axis=0) / total
     scatter = np.sum((hits - np.outer(times, probability)) ** 2, axis=0)
     count = len(batches)
-    error = np.sqrt(scatter * count / (count - 1)) / times.sum()
+    is_known = sum(map(len, batches)) >= _FEWEST_GAPS
+    error = np.sqrt(scatter * count / (count - 1)) / total if is_known else np.nan * lengths
     return probability / lengths, error / lengths
 
 

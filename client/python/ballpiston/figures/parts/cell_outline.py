@@ -65,9 +65,7 @@ def overlap(rho: float) -> FloatArray:
     """Points (n, 2) of the lens in which the discs 1 and 2 overlap, at the right of the cell."""
     theta = np.arctan(overlap_length(rho))
     angles = np.linspace(theta, -theta, 49)
-    return np.concatenate(
-        [circle(rho, 1, np.pi / 2 + angles), circle(rho, 2, -np.pi / 2 + angles)]
-    )
+    return np.concatenate([circle(rho, 1, np.pi / 2 + angles), circle(rho, 2, -np.pi / 2 + angles)])
 
 
 def half_height(rho: float, depth: FloatArray) -> FloatArray:

@@ -174,6 +174,12 @@ def remove_empty(panels: Any, count: int) -> None:
         axes.set_xlabel(panels[-1, 0].get_xlabel())
 
 
+def widen(axes: Axes, low: float, high: float) -> None:
+    """Lets the vertical axis include this range beside all points."""
+    bottom, top = axes.get_ylim()
+    axes.set_ylim(min(low, bottom), max(high, top))
+
+
 def signed_log_axis(axes: Axes, noise: float) -> None:
     """A vertical axis that is linear below the power of ten above `noise`, and logarithmic above it,
     on both sides of 0."""

@@ -28,8 +28,8 @@ def table(rows: Iterable[Mapping[str, Any]], names: Iterable[str] = ()) -> Table
 
 def stacked(parts: Iterable[Mapping[str, Any]]) -> Table:
     """One table below the other. A single value in place of a column is repeated in all rows of its
-    part."""
-    tables = [dict(zip(part, np.broadcast_arrays(*part.values()))) for part in parts]
+    part. A part without columns has no rows."""
+    tables = [dict(zip(part, np.broadcast_arrays(*part.values()))) for part in parts if part]
     return {n: np.concatenate([t[n] for t in tables]) for n in (tables[0] if tables else ())}
 
 
