@@ -188,7 +188,8 @@ def test_merged_bins_keep_the_probability() -> None:
 
 
 def test_an_empty_bin_of_the_kernel_has_an_error() -> None:
-    found = kernel.densities([0.1], np.array([[0.1, 0.01]]), 2)
+    hit = {"piston_energy": np.array([0.1]), "piston_energy_after": np.array([0.01])}
+    found = kernel.densities([0.1], hit, 2)
     assert found["count"].tolist() == [1, 0]
     assert found["standard_error"] == pytest.approx(found["density"][0] / np.array([1, 3]))
 

@@ -9,8 +9,6 @@ steps, because the piston reaches the cell once in its period (2 lambda + 4 delt
 Time on two cores: quick 1 s, default 25 s, full 8 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -74,19 +72,17 @@ def draw(tables: Tables) -> Figure:
     exponential: dict[str, Any] = {"color": style.BLACK, "linewidth": 1.2, "dashes": (6, 4)}
     for (upper, lower), epsilon in zip(panels.T, energies):
         upper.set_title(f"ε = {epsilon:g}")
-        for line, colour, _ in style.series(rows(data, epsilon=epsilon), "delta", "δ"):
+        for line, colour, label in style.series(rows(data, epsilon=epsilon), "delta", "δ"):
             seen = line["value"] > 0
-            upper.semilogy(line["t"][seen], line["value"][seen], color=colour)
+            upper.semilogy(line["t"][seen], line["value"][seen], color=colour, label=label)
             excess = line["value"] - np.exp(-line["t"])
             style.error_points(lower, line["t"], excess, line["error"], colour, markersize=2)
-        upper.semilogy(t, np.exp(-t), **exponential)
+        upper.semilogy(t, np.exp(-t), label="exponential", **exponential)
         style.level(lower, 0, **exponential)
     # No standard error of a probability is larger.
     style.signed_log_axis(panels[1, 0], 1 / np.sqrt(data["samples"][0]))
     panels[0, 0].set(ylim=(_LEAST, 1.3), ylabel="probability of no collision yet")
-    panels[1, 0].set(xlim=(0, 1.01 * longest))
-    style.outer_labels(panels[1:], "t/τ$_{bp}$(ε)", "minus the exponential")
-    handles = [style.line_handle("exponential", **exponential)]
-    handles += [style.line_handle(s.label, s.colour) for s in style.series(data, "delta", "δ")]
-    style.top_legend(figure, handles)
+    panels[1, 0].set(xlim=(0, 1.01 * longest), ylabel="minus the exponential")
+    figure.supxlabel("t/τ$_{bp}$(ε)")
+    style.top_legend(figure, panels[0, 0].get_legend_handles_labels()[0])
     return figure

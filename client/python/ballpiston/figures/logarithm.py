@@ -13,8 +13,6 @@ A hollow point has too few events for an error.
 The program `slow_pistons` measures them. Time on one core: quick 5 s, default 2 min, full 15 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -10,8 +10,6 @@ b  the same less log(tau), over the root of delta
 Time on one core: quick 12 s, default 70 s, full 11 min.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -8,8 +8,6 @@ orbits, from the master equation, is above the panel.
 Time on two cores: quick 1 s, default 10 s, full 2 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -5,8 +5,6 @@ onto one curve, tau_bp/tau(epsilon) = phi(epsilon). Inset: the collision rate 1/
 delta. Time on two cores: quick 1 s, default 2 s, full 3 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.figure import Figure

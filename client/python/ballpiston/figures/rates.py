@@ -12,10 +12,7 @@ All values of a line come from the same orbits. Therefore neighbouring points ha
 statistical error. Time on two cores: quick 3 s, default 25 s, full 4 min.
 """
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -39,8 +36,7 @@ _LENGTHS = 1e-4 * 10 ** (np.arange(17) / 4)  # of the windows, in units of the m
 _ASIDE = 1.12  # the points of successive energies are shifted in time by this factor
 
 
-@dataclass(frozen=True)
-class Kind:
+class Kind(NamedTuple):
     """A kind of events: its name, the energies of the piston (all, if the name is not
     "conditional"), and its exact rate."""
 
@@ -84,15 +80,15 @@ def _kinds(client: Client, rho: float, delta: float, epsilon: Numbers) -> list[K
         Kind("all", np.nan, 0, 0.5, met + ball + piston),
         Kind("ball_piston", np.nan, 0, 0.5, met),
     ]
-    for middle in forms["epsilon"][0]:
-        lower, upper = max(middle - _HALF_WIDTH, 0), min(middle + _HALF_WIDTH, 0.5)
-        # In equilibrium u = sqrt(2 epsilon) is uniform. Therefore energies that are evenly spaced
-        # in u have equal weights.
-        edges = np.linspace(np.sqrt(2 * lower), np.sqrt(2 * upper), _ENERGIES + 1)
-        u = (edges[:-1] + edges[1:]) / 2
-        times = client.analytic(rho, delta, u**2 / 2)["mean_free_time_conditional"][0]
-        kinds.append(Kind("conditional", float(middle), lower, upper, float(np.mean(1 / times))))
-    return kinds
+    middle = forms["epsilon"][0]
+    lower, upper = np.maximum(middle - _HALF_WIDTH, 0), np.minimum(middle + _HALF_WIDTH, 0.5)
+    # In equilibrium u = sqrt(2 epsilon) is uniform. Therefore energies that are evenly spaced in u
+    # have equal weights.
+    edges = np.linspace(np.sqrt(2 * lower), np.sqrt(2 * upper), _ENERGIES + 1)
+    u = (edges[:-1] + edges[1:]) / 2
+    times = client.analytic(rho, delta, u.ravel() ** 2 / 2)["mean_free_time_conditional"][0]
+    rate = (1 / times.reshape(u.shape)).mean(axis=0)
+    return kinds + [Kind("conditional", *numbers) for numbers in zip(middle, lower, upper, rate)]
 
 
 def batches_of_gaps(orbit: Table, kind: Kind) -> list[FloatArray]:

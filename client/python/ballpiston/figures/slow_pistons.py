@@ -11,8 +11,6 @@ b  the growth of Var(Q)/t over the law, at each cold temperature and at each del
 The program `slow_pistons` measures a. Time on one core: quick 20 s, default 3 min, full 20 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -18,8 +18,6 @@ precision. Panels without data are left out.
 Time on one core: quick 3 s, default 1 min, full 20 min.
 """
 
-from __future__ import annotations
-
 import os
 from typing import Any
 

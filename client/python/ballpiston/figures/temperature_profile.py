@@ -6,8 +6,6 @@ T^(3/2) falls linearly. Lower panel: the difference from that line.
 Time on two cores: quick 2 s, default 50 s, full 15 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

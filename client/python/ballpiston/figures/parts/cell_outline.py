@@ -2,8 +2,6 @@
 the unit square around the cell. lambda = sqrt(4 rho^2 - 1) is the length of the overlap of two
 neighbouring discs; the cell's tips are at a distance 1/2 - lambda/2 from its middle."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ballpiston.figures.parts.tables import FloatArray

@@ -1,7 +1,5 @@
 """The programs that some figures run in place of a question to the server (tools/README.md)."""
 
-from __future__ import annotations
-
 import csv
 import os
 import shutil

@@ -1,7 +1,5 @@
 """Tables: named columns of equal length. A figure's data are tables by name of file."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 

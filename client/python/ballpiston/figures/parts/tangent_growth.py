@@ -33,8 +33,6 @@ depends on the piston's speed. Positions are uniform on the collision surface at
 The curvatures follow from the ball's flights in its cell with a closed tip.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
