@@ -2,7 +2,7 @@
 
 The density W/f of the piston's energy after a collision, for several energies before it. Lines: the
 exact kernel, which diverges at 0 and at the largest energy, 1/2 - epsilon. Points: collisions of
-the billiard, with one standard error. By default it takes half a minute of one core.
+the billiard, with one standard error. Time on two cores: quick 2 s, default 4 s, full 15 s.
 """
 
 from collections.abc import Iterable

@@ -12,7 +12,7 @@ All values of a line come from the same orbits. Therefore neighbouring points ha
 statistical error. Time on two cores: quick 3 s, default 25 s, full 4 min.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -37,14 +37,14 @@ _ASIDE = 1.12  # the points of successive energies are shifted in time by this f
 
 
 class Kind(NamedTuple):
-    """A kind of events: its name, the energies of the piston (all, if the name is not
+    """A kind of events, the energies of the piston from `lower` to `upper` (all, if the kind is not
     "conditional"), and its exact rate."""
 
-    name: str
+    kind: str
     epsilon: float
     lower: float
     upper: float
-    rate: float
+    exact: float
 
 
 def measure(
@@ -68,7 +68,12 @@ def measure(
         orbit = client.trace_arrays(*names, rho=rho, delta=delta, seed=seed + k, events=events)
         for kind, found in batches.items():
             found += batches_of_gaps(orbit, kind)
-    return {"rates": stacked(_rates(kind, found) for kind, found in batches.items())}
+    measured = []
+    for kind, found in batches.items():
+        lengths = _LENGTHS / kind.exact
+        rate, error = rate_of_windows(found, lengths)
+        measured.append(kind._asdict() | {"t": lengths, "rate": rate, "standard_error": error})
+    return {"rates": stacked(measured)}
 
 
 def _kinds(client: Client, rho: float, delta: float, epsilon: Numbers) -> list[Kind]:
@@ -76,10 +81,8 @@ def _kinds(client: Client, rho: float, delta: float, epsilon: Numbers) -> list[K
     met, ball, piston = (
         1 / float(forms[f"tau_{name}"][0]) for name in ("ball_piston", "ball_wall", "piston_wall")
     )
-    kinds = [
-        Kind("all", np.nan, 0, 0.5, met + ball + piston),
-        Kind("ball_piston", np.nan, 0, 0.5, met),
-    ]
+    kinds = [Kind("all", np.nan, 0, 0.5, met + ball + piston)]
+    kinds += [Kind("ball_piston", np.nan, 0, 0.5, met)]
     middle = forms["epsilon"][0]
     lower, upper = np.maximum(middle - _HALF_WIDTH, 0), np.minimum(middle + _HALF_WIDTH, 0.5)
     # In equilibrium u = sqrt(2 epsilon) is uniform. Therefore energies that are evenly spaced in u
@@ -96,12 +99,12 @@ def batches_of_gaps(orbit: Table, kind: Kind) -> list[FloatArray]:
     belongs to the batch of its end. The piston's energy is constant during a gap between
     ball-piston events. Therefore the gaps of one energy give the conditional probability."""
     batch = np.arange(len(orbit["time"])) // (len(orbit["time"]) // _BATCHES)
-    if kind.name == "all":
+    if kind.kind == "all":
         chosen = np.ones(len(batch), dtype=bool)
     else:
         chosen = orbit["event"] == "ball_piston"
     gaps, batch = np.diff(orbit["time"][chosen], prepend=0.0), batch[chosen]
-    if kind.name == "conditional":
+    if kind.kind == "conditional":
         energy = orbit["piston_energy_before"][chosen]
         near = (energy >= kind.lower) & (energy < kind.upper)
         gaps, batch = gaps[near], batch[near]
@@ -127,19 +130,6 @@ def rate_of_windows(
     is_known = sum(map(len, batches)) >= _FEWEST_GAPS
     error = np.sqrt(scatter * count / (count - 1)) / total if is_known else np.nan * lengths
     return probability / lengths, error / lengths
-
-
-def _rates(kind: Kind, batches: list[FloatArray]) -> dict[str, Any]:
-    lengths = _LENGTHS / kind.rate
-    rate, error = rate_of_windows(batches, lengths)
-    return {
-        "kind": kind.name,
-        "epsilon": kind.epsilon,
-        "t": lengths,
-        "rate": rate,
-        "standard_error": error,
-        "exact": kind.rate,
-    }
 
 
 @style.styled

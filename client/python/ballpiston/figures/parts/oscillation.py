@@ -64,7 +64,9 @@ def fits(points: Table, synthetic: int) -> Table:
             of_energy += [{"exponent": exponent} | row for row in fitted]
             of_powers.append(powers)
         if of_energy:
-            sums += [{"epsilon": epsilon} | row for row in _sums(of_energy, np.sum(of_powers, axis=0))]
+            sums += [
+                {"epsilon": epsilon} | row for row in _sums(of_energy, np.sum(of_powers, axis=0))
+            ]
         found += [{"epsilon": epsilon} | row for row in of_energy]
     return table(found + sums, _COLUMNS)
 
