@@ -67,9 +67,9 @@ def draw(tables: Tables) -> Figure:
     lengths = distinct(markov["cells"])
     figure, panels = style.panels((960, 840), 2, 1, sharex=True, height_ratios=(3, 2))
     x = np.linspace(0, 1, 200)
-    panels[0].plot(x, linear_law(hot, cold, x), color=style.BLACK)
+    line = {"color": style.BLACK, "label": "linear T$^{3/2}$"}
+    handles = panels[0].plot(x, linear_law(hot, cold, x), **line)
     style.level(panels[1], 0)
-    handles = [style.line_handle("linear T$^{3/2}$", style.BLACK)]
     for k, length in enumerate(lengths):
         handles.append(style.point_handle(f"N = {length}", style.colour(k)))
         for model in ("markov", "billiard"):

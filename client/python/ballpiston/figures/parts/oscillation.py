@@ -61,13 +61,10 @@ def fits(points: Table, synthetic: int) -> Table:
             if exponent == 1 or above.sum() < _FEWEST_POINTS:
                 continue
             fitted, powers = _fits_of_series(pick(series, above), random, synthetic)
-            of_energy += [{"exponent": exponent} | row for row in fitted]
+            of_energy += [{"epsilon": epsilon, "exponent": exponent} | row for row in fitted]
             of_powers.append(powers)
-        if of_energy:
-            sums += [
-                {"epsilon": epsilon} | row for row in _sums(of_energy, np.sum(of_powers, axis=0))
-            ]
-        found += [{"epsilon": epsilon} | row for row in of_energy]
+        found += of_energy
+        sums += _sums(of_energy, np.sum(of_powers, axis=0)) if of_energy else []
     return table(found + sums, _COLUMNS)
 
 
@@ -133,7 +130,8 @@ def _chi_squared(terms: FloatArray, error: FloatArray, data: FloatArray) -> Floa
 
 
 def _model_error(models: list[FloatArray], log_excess: FloatArray, error: FloatArray) -> float:
-    """By bisection."""
+    """The common error with which chi^2 of the best model equals its degrees of freedom, by
+    bisection."""
 
     def is_too_small(candidate: float) -> bool:
         total = np.hypot(error, candidate)
@@ -161,6 +159,6 @@ def _sums(fitted: list[dict[str, Any]], powers: FloatArray) -> list[dict[str, An
         same = [row for row in fitted if row["model"] == model]
         names = {"points", "chi_squared", "degrees_of_freedom", "gain"} & same[0].keys()
         total = {name: sum(row[name] for row in same) for name in names}
-        is_plain = model == "power law"
-        found.append({"model": model} | total | ({} if is_plain else best_transform(powers)))
+        best = {} if model == "power law" else best_transform(powers)
+        found.append({"epsilon": same[0]["epsilon"], "model": model} | total | best)
     return found

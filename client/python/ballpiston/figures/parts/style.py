@@ -131,22 +131,17 @@ def point_handle(label: str, color: str, marker: str = "o", **style: Any) -> Lin
     return Line2D([], [], linestyle="", marker=marker, color=color, label=label, **style)
 
 
-def line_handle(label: str, color: str, **style: Any) -> Line2D:
-    """An entry of a legend: a line."""
-    return Line2D([], [], color=color, label=label, **style)
-
-
 def inside(axes: Axes, x: float, y: float, text: str, **style: Any) -> None:
     """A text in a panel; x and y are shares of its width and height."""
     axes.text(x, y, text, transform=axes.transAxes, **style)
 
 
-def top_legend(figure: Figure, handles: Sequence[Any], columns: int = 0) -> None:
+def top_legend(figure: Figure, handles: Sequence[Any], columns: int = 0, **more: Any) -> None:
     """One legend for all panels, in a strip of its own above them."""
     columns = columns or len(handles)
     lines = -(-len(handles) // columns)
     height = (14 + 22 * lines) / _PIXELS / figure.get_figheight()
-    figure.legend(handles=handles, loc="upper center", ncol=columns, frameon=False)
+    figure.legend(handles=handles, loc="upper center", ncol=columns, frameon=False, **more)
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - height))
 
 
