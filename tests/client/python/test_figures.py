@@ -19,14 +19,17 @@ import ballpiston
 from ballpiston import figures
 from ballpiston.figures import (
     gas,
+    hitting_time,
     ingoing_law,
+    kernel,
     lyapunov,
     markov_test,
+    rates,
     section,
     speed_accuracy,
     stability,
 )
-from ballpiston.figures.parts import command, oscillation, style, tables
+from ballpiston.figures.parts import command, oscillation, programs, style, tables
 from ballpiston.table import write_table
 
 REFERENCE = json.loads(
@@ -180,6 +183,33 @@ def test_merged_bins_keep_the_probability() -> None:
     assert merged["density"] * [4, 4, 2] == pytest.approx([6 / 45, 22 / 45, 17 / 45])
     assert merged["error"] == pytest.approx(np.sqrt([6, 22, 17]) / 45 / [4, 4, 2])
     assert merged["alpha"].tolist() == [2.0, 6.0, 9.0]
+    empty = ingoing_law.merge(bins | {"count": 0 * count}, 4)["error"]
+    assert empty == pytest.approx(np.sqrt(45 * 0.1 / np.array([4, 4, 2])) / 45)
+
+
+def test_an_empty_bin_of_the_kernel_has_an_error() -> None:
+    hit = {"piston_energy": np.array([0.1]), "piston_energy_after": np.array([0.01])}
+    found = kernel.densities([0.1], hit, 2)
+    assert found["count"].tolist() == [1, 0]
+    assert found["standard_error"] == pytest.approx(found["density"][0] / np.array([1, 3]))
+
+
+def test_few_gaps_have_no_error_and_no_gap_has_no_rate() -> None:
+    ends = np.array([1.0, 2.0])
+    for gaps, known in (([np.ones(49), ends[:0]], False), ([np.ones(25), 2 * np.ones(25)], True)):
+        rate, error = rates.rate_of_windows(gaps, ends)
+        assert rate[0] == pytest.approx(1 if not known else 2 / 3)
+        assert np.isfinite(error).all() == known
+    assert np.isnan(rates.rate_of_windows([ends[:0]] * 2, ends)).all()
+
+
+def test_first_hits_at_the_ends_of_the_energy_are_drawn_with_errors(
+    client: ballpiston.Client,
+) -> None:
+    data = hitting_time.measure(client, delta=0.2, epsilon="0,0.5", samples=2000)
+    inexact = tables.pick(data["hitting-time"], data["hitting-time"]["t"] > 0)
+    assert (inexact["error"] != 0).all()
+    expect_texts_inside(hitting_time.draw(data))
 
 
 def test_a_chain_is_drawn_as_one_row(client: ballpiston.Client) -> None:
@@ -227,13 +257,15 @@ statistical_error,own_error,bias_resolved
 
 
 def test_a_resolved_bias_is_part_of_the_expected_error() -> None:
-    data = speed_accuracy.measurements(MEASUREMENTS)
-    step, lanes = speed_accuracy.curves_of(data, "mean-free-time", 64)
-    assert (step.bias, lanes.bias) == (0.4, 0)
-    assert step.expected_error == pytest.approx([np.hypot(0.08, 0.4), 0.5])
+    data = programs.read_table(MEASUREMENTS)
+    step, lanes = (each.part for each in speed_accuracy.curves_of(data, "mean-free-time", 64))
+    biases = [speed_accuracy.resolved_bias(runs) for runs in (step, lanes)]
+    assert biases == [(0.4, 0.03), (0, 0.03)]
+    error, error_of_error = speed_accuracy.expected_error(step, *biases[0])
+    assert error == pytest.approx([np.hypot(0.08, 0.4), 0.5])
     of_chance, of_bias = 0.3**2 / np.sqrt(800), 0.4 * 0.03
-    assert step.error_of_error[1] == pytest.approx(np.hypot(of_chance, of_bias) / 0.5)
-    assert lanes.error_of_error == pytest.approx([0.05 / np.sqrt(800)])
+    assert error_of_error[1] == pytest.approx(np.hypot(of_chance, of_bias) / 0.5)
+    assert speed_accuracy.expected_error(lanes, *biases[1])[1] == pytest.approx(0.05 / np.sqrt(800))
 
 
 RELAXATIONS = """0.53,0.1,0.125,spectrum,0,relaxation-time,0,0,0.1,0.4375,0.25,0.01,0
@@ -244,26 +276,22 @@ RELAXATIONS = """0.53,0.1,0.125,spectrum,0,relaxation-time,0,0,0.1,0.4375,0.25,0
 
 
 def test_the_floor_of_the_limit_is_its_bias_from_two_errors_on_else_a_bound() -> None:
-    data = speed_accuracy.measurements(MEASUREMENTS + RELAXATIONS)
+    data = programs.read_table(MEASUREMENTS + RELAXATIONS)
     runs = tables.rows(data, quantity="relaxation-time")
     floors = speed_accuracy.floors_of_limit(runs)
     assert floors["delta"].tolist() == [0.2, 0.1]
     assert floors["value"].tolist() == [0.5, 0.4375 + 2 * 0.25]
     assert floors["is_bias"].tolist() == [True, False]
+    panel = speed_accuracy.draw({"speed-accuracy": data}).axes[4]
+    (bar,) = panel.containers[0].lines[2][0].get_segments()  # of the limit, at delta = 0.2
+    assert np.ptp(bar[:, 1]) == pytest.approx(2 * 0.5 * 0.25 / np.hypot(0.1, 0.5), rel=1e-3)
 
 
 def test_measurements_without_a_gas_and_a_limit_are_drawn() -> None:
-    data = speed_accuracy.measurements(MEASUREMENTS)
+    data = programs.read_table(MEASUREMENTS)
     figure = speed_accuracy.draw({"speed-accuracy": data})
     expect_texts_inside(figure)
     assert len(figure.axes) == 4
-
-
-@pytest.mark.parametrize(
-    "seconds,text", [(195e-9, "195 ns"), (17.2e-3, "17 ms"), (1e-6, "1.0 µs"), (90, "90 s")]
-)
-def test_durations_have_two_digits(seconds: float, text: str) -> None:
-    assert speed_accuracy.duration(seconds) == text
 
 
 # Files
@@ -331,6 +359,7 @@ def test_every_figure_has_its_parts() -> None:
         (["cell", "--delta", "0.9"], "delta is 0.9; permitted"),
         (["stability", "--all-starts", "no"], "--all-starts has to be true or false, not 'no'"),
         (["rates", "--orbits", "0"], "--orbits has to be from 1 to"),
+        (["rates", "--events", "7"], "events is 7; permitted: 8 to 1000000"),
         (["conductivity", "--cells", "3x3"], "cells: 3x3 is a lattice; permitted: lengths of"),
         (["temperature-profile", "--cells", "4,2x2"], "cells: 2x2 is a lattice"),
         (["full-counting", "--cells", "4x2"], "cells: 4x2 is a lattice"),

@@ -9,26 +9,26 @@ import numpy as np
 import pytest
 
 import ballpiston
-from ballpiston.figures import full_counting, logarithm, lyapunov
+from ballpiston.figures import full_counting, logarithm, lyapunov, slow_pistons
 from ballpiston.figures.parts import charge, fits, tangent_growth
 
 
 def test_a_fit_finds_the_coefficients_of_a_polynomial() -> None:
     x = np.array([0.1, 0.2, 0.3, 0.5])
-    fit = fits.linear(fits.powers(x, 1), 2 + 3 * x, np.full(4, 0.1))
+    fit = fits.linear(np.vander(x, 2, increasing=True), 2 + 3 * x, np.full(4, 0.1))
     assert fit.coefficients == pytest.approx([2, 3])
     assert (fit.chi_squared, fit.freedom) == (pytest.approx(0, abs=1e-20), 2)
 
 
 def test_a_mean_has_the_error_of_independent_values() -> None:
-    fit = fits.mean(np.array([1.0, 3.0]), np.array([1.0, 1.0]))
+    fit = fits.linear(np.ones((2, 1)), np.array([1.0, 3.0]), np.ones(2))
     assert (fit.coefficients[0], fit.errors[0]) == pytest.approx((2, np.sqrt(0.5)))
     assert (fit.chi_squared, fit.freedom) == (pytest.approx(2), 1)
 
 
 def test_a_mean_of_correlated_values_has_a_larger_error() -> None:
-    ones = np.ones(2)
-    fit = fits.mean(np.array([1.0, 3.0]), ones, np.array([[1.0, 0.5], [0.5, 1.0]]))
+    correlation = np.array([[1.0, 0.5], [0.5, 1.0]])
+    fit = fits.linear(np.ones((2, 1)), np.array([1.0, 3.0]), np.ones(2), correlation)
     assert (fit.coefficients[0], fit.errors[0]) == pytest.approx((2, np.sqrt(0.75)))
     assert fit.chi_squared == pytest.approx(4)
 
@@ -54,7 +54,7 @@ def test_the_limit_of_a_cumulant_has_the_error_of_correlated_windows() -> None:
     cells = np.repeat([4.0, 6, 8, 12], 5)
     found = {"cells": cells, "order": np.full(20, 2.0), "time": np.ones(20)}
     found |= {"value": np.ones(20), "standard_error": np.tile(2.0 ** (np.arange(5) / 2), 4)}
-    share = fits.powers(1 / cells, 2)
+    share = np.vander(1 / cells, 3, increasing=True)
     independent = fits.linear(share, found["value"], found["standard_error"])
     limit = full_counting.extrapolated(found, 1.5, 0.5)["standard_error"][1]
     assert 1.2 < limit / independent.errors[0] < 1.6
@@ -82,10 +82,10 @@ def test_the_increase_of_the_variance_has_the_error_of_the_shorter_window() -> N
     assert increase["standard_error"] == pytest.approx(error[:-1])
 
 
-def test_limits_of_full_counting_are_those_of_the_closed_integrals() -> None:
-    i1, i2, i3, i4 = (
-        2 ** (n - 1) * (1.5 ** (p := (5 * n - 2) / 2) - 0.5**p) / p for n in range(1, 5)
-    )
+def test_limits_of_full_counting_are_those_of_integrals_by_quadrature() -> None:
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    t = 1 + nodes / 2
+    i1, i2, i3, i4 = (weights / 2 @ (np.sqrt(t) * (2 * t**2.5) ** n) for n in range(4))
     fourth = 3 * (5 * i4 * i1**2 - 14 * i1 * i2 * i3 + 9 * i2**3) / i1**5
     expected = [i1, i2 / i1, 3 * (i3 * i1 - i2**2) / i1**3, fourth]
     assert full_counting.limits(1.5, 0.5) == pytest.approx(expected, rel=1e-12)
@@ -96,12 +96,26 @@ def test_cumulants_that_were_not_measured_are_drawn_as_such() -> None:
     order = np.array([1.0, 1, 1, 1, 2, 2, 2])
     cells = np.array([4.0, 6, 8, 12, 4, 4, 6])  # the variance has only two chains
     found = {"cells": cells, "order": order, "time": np.full(7, np.inf)}
-    found |= {"value": np.ones(7), "standard_error": np.full(7, 0.01)}
+    found |= {"value": np.full(7, 2.0), "standard_error": np.full(7, 0.01)}
     fits_of_orders = full_counting.extrapolated(found, 1.5, 0.5)
     assert np.isnan(fits_of_orders["a0"]).tolist() == [False, True, True, True]
     tables = {"full-counting": found, "full-counting-limits": fits_of_orders}
-    texts = [text.get_text() for axes in full_counting.draw(tables).axes for text in axes.texts]
+    panels = full_counting.draw(tables).axes
+    texts = [text.get_text() for axes in panels for text in axes.texts]
     assert texts == ["not measured: too few collisions"] * 2
+    assert panels[0].get_ylim()[1] > 2  # includes the points
+
+
+def test_growths_that_were_not_measured_are_drawn_as_such(
+    client: ballpiston.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    idle = {"time": np.full(2, 64.0), "limit": np.ones(2), "limit_error": np.full(2, 0.1)}
+    monkeypatch.setattr(slow_pistons, "table_of", lambda *_, **__: idle)
+    tables = slow_pistons.measure(client, delta=0.2, cold=0.1, samples=10)
+    assert np.isnan(tables["slow-pistons"]["growth"]).all()
+    panels = slow_pistons.draw(tables).axes
+    texts = [text.get_text() for axes in panels for text in axes.texts]
+    assert texts == ["not measured: too few samples"] * 2
 
 
 def test_the_noise_near_equilibrium_is_that_of_equilibrium() -> None:
@@ -157,19 +171,22 @@ def test_growth_without_an_error_is_left_out() -> None:
 def test_a_single_rare_delta_has_two_orbits_and_one_place_in_the_picture(
     client: ballpiston.Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked: dict[str, Any] = {}
+    asked: list[dict[str, Any]] = []
 
     def windows(program: str, command: str, **flags: Any) -> dict[str, Any]:
-        asked.update(flags)
+        asked.append(flags)
         values = [f"{kind}{part}" for kind in ("", "later_") for part in logarithm.PARTS]
         names = (*values, *(f"{name}_error" for name in values), "limit_all", "limit_idle")
         return {"window": 8 * 2.0 ** np.arange(5)} | {name: np.ones(5) for name in names}
 
     monkeypatch.setattr(logarithm, "table_of", windows)
     figure = logarithm.draw(logarithm.measure(client, rho=0.7, delta=0.004, samples=300))
-    assert asked["orbits"] == 2
+    assert asked[0]["orbits"] == 2
     bars = figure.axes[1].containers
+    assert figure.axes[1].get_ylim()[1] > 100  # includes the bars
     assert len(bars) == 3 and len({bar.lines[0].get_xdata()[0] for bar in bars}) == 1
+    logarithm.measure(client, rho=0.7, delta="0.004,0.003", samples=300)
+    assert asked[-1]["seed"] != asked[-2]["seed"]  # so that their runs are independent
 
 
 # The second Lyapunov exponent
@@ -257,4 +274,7 @@ def test_the_computed_curve_ends_at_the_largest_delta(
     deltas = tables["lyapunov-curve"]["delta"]
     assert deltas[-1] == pytest.approx((1 - np.sqrt(4 * rho**2 - 1)) / 2, rel=1e-12)
     assert (np.diff(deltas) > 0).all()
+    # The first two are 0.0036 apart in the law, and have the same random numbers.
+    computed = (tables["lyapunov-curve"]["computed"] - np.log(tables["lyapunov-curve"]["tau"]))[:2]
+    assert abs(np.diff(computed)) < 0.03
     lyapunov.draw(tables)

@@ -19,8 +19,6 @@ The module of a figure has the name in `ballpiston figure NAME` with underscores
 `parts` has what they share. Needs matplotlib.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 

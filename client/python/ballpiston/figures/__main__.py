@@ -1,7 +1,5 @@
 """What `ballpiston figure` starts: python3 -m ballpiston.figures NAME --out DIR ..."""
 
-from __future__ import annotations
-
 import sys
 
 from ballpiston.figures.parts.command import main

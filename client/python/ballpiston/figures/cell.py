@@ -6,8 +6,6 @@ lambda, with tan(theta) = lambda, is the length of the overlap of two opposite d
 proportional to the velocities.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

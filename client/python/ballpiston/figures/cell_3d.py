@@ -6,8 +6,6 @@ piston's walls. The ball is left of the piston. Therefore the slanted plane q1 =
 surface, cuts off the lower end of the right tip.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -7,8 +7,6 @@ The parts above the plane contribute to the rate of collisions, the other parts 
 epsilon = 1/4 both circles contribute, above 1/4 one circle.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

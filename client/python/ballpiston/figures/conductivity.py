@@ -7,8 +7,6 @@ gas, from Varadhan's formula.
 Time on two cores: quick 3 s, default 50 s, full 5 min.
 """
 
-from __future__ import annotations
-
 from matplotlib.figure import Figure
 
 from ballpiston.client import Client

@@ -6,8 +6,6 @@ the kinetic energy. The gas is periodic: the pistons of the first column and row
 the last column and row.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -78,16 +76,11 @@ def draw(tables: Tables) -> Figure:
 
 def _with_copies(pistons: Table, at: dict[str, Any]) -> Table:
     """With those of the first column and row again at the opposite end of the periodic gas."""
-    is_vertical = pistons["vertical"]
-    right = pistons | {"x": pistons["x"] + at["columns"]}
-    upper = pistons | {"y": pistons["y"] + at["rows"]}
-    return stacked(
-        [
-            pistons,
-            pick(right, is_vertical & (pistons["x"] < 0)),
-            pick(upper, ~is_vertical & (pistons["y"] < 0)),
-        ]
-    )
+    is_first = np.where(pistons["vertical"], pistons["x"], pistons["y"]) < 0
+    copies = pick(pistons, is_first)
+    copies["x"] = copies["x"] + np.where(copies["vertical"], at["columns"], 0)
+    copies["y"] = copies["y"] + np.where(copies["vertical"], 0, at["rows"])
+    return stacked([pistons, copies])
 
 
 def _rows(whole: Table) -> list[dict[str, Any]]:

@@ -9,8 +9,6 @@ steps, because the piston reaches the cell once in its period (2 lambda + 4 delt
 Time on two cores: quick 1 s, default 25 s, full 8 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -19,7 +17,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, first_hits
-from ballpiston.figures.parts.tables import Tables, curves, distinct, rows
+from ballpiston.figures.parts.tables import Tables, closed_forms, curves, distinct, rows
 from ballpiston.parameter_lists import Numbers
 
 EFFORT = {
@@ -41,15 +39,20 @@ def measure(
     seed: int = 0,
 ) -> Tables:
     """The curves `survival`: the probability that ball and piston have not collided up to a time.
-    Their limit is the exponential law with the same mean free time, and `t` is the time in units of
-    this mean. `samples` are the first hits of each line."""
+    Their limit is the exponential law with the same mean free time, where the law has a limit (not
+    at the energies 0 and 1/2), and `t` is the time in units of this mean. `samples` are the first
+    hits of each line."""
     result = first_hits(client, rho, delta, epsilon, exponent, samples, seed)
     survival = rows(curves(result), name="survival")
-    with np.errstate(divide="ignore"):
-        survival["t"] = -np.log(survival["limit"])
-    # If too few orbits have survived to measure the error, it is that of the exponential law.
-    limit = survival["limit"]
-    binomial = np.sqrt(limit * (1 - limit) / survival["samples"])
+    forms = client.analytic(rho, delta, epsilon)
+    units = closed_forms(forms, "delta", "epsilon", "mean_free_time_conditional")
+    unit_of = {(d, e): unit for d, e, unit in zip(*units.values())}
+    pairs = zip(survival["delta"], survival["epsilon"])
+    survival["t"] = survival["time"] / np.array([unit_of[pair] for pair in pairs])
+    # If too few orbits have survived to measure the error, it is that of the larger probability, the
+    # measured one or that of the exponential law. It is not known if both are 0 or absent.
+    p = np.fmax(survival["value"], survival["limit"])
+    binomial = np.where(p > 0, np.sqrt(p * (1 - p) / survival["samples"]), np.nan)
     error = survival["standard_error"]
     survival["error"] = np.where(np.isfinite(error), error, binomial)
     return {"hitting-time": survival}
@@ -64,24 +67,22 @@ def draw(tables: Tables) -> Figure:
     shared: dict[str, Any] = {"sharex": True, "sharey": "row", "squeeze": False}
     width = max(640, 100 + 320 * len(energies))
     figure, panels = style.panels((width, 760), 2, len(energies), **shared)
-    longest = data["t"][np.isfinite(data["t"])].max()
+    longest = data["t"].max()
     t = np.linspace(0, longest, 200)
     exponential: dict[str, Any] = {"color": style.BLACK, "linewidth": 1.2, "dashes": (6, 4)}
     for (upper, lower), epsilon in zip(panels.T, energies):
         upper.set_title(f"ε = {epsilon:g}")
-        for line, colour, _ in style.series(rows(data, epsilon=epsilon), "delta", "δ"):
+        for line, colour, label in style.series(rows(data, epsilon=epsilon), "delta", "δ"):
             seen = line["value"] > 0
-            upper.semilogy(line["t"][seen], line["value"][seen], color=colour)
-            excess = line["value"] - line["limit"]
+            upper.semilogy(line["t"][seen], line["value"][seen], color=colour, label=label)
+            excess = line["value"] - np.exp(-line["t"])
             style.error_points(lower, line["t"], excess, line["error"], colour, markersize=2)
-        upper.semilogy(t, np.exp(-t), **exponential)
+        upper.semilogy(t, np.exp(-t), label="exponential", **exponential)
         style.level(lower, 0, **exponential)
     # No standard error of a probability is larger.
     style.signed_log_axis(panels[1, 0], 1 / np.sqrt(data["samples"][0]))
     panels[0, 0].set(ylim=(_LEAST, 1.3), ylabel="probability of no collision yet")
-    panels[1, 0].set(xlim=(0, 1.01 * longest))
-    style.outer_labels(panels[1:], "t/τ$_{bp}$(ε)", "minus the exponential")
-    handles = [style.line_handle("exponential", **exponential)]
-    handles += [style.line_handle(s.label, s.colour) for s in style.series(data, "delta", "δ")]
-    style.top_legend(figure, handles)
+    panels[1, 0].set(xlim=(0, 1.01 * longest), ylabel="minus the exponential")
+    figure.supxlabel("t/τ$_{bp}$(ε)")
+    style.top_legend(figure, panels[0, 0].get_legend_handles_labels()[0])
     return figure

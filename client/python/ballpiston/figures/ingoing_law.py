@@ -7,13 +7,10 @@ sigma = +1 is zero if the piston is faster than the ball, epsilon >= 1/4.
 Time on two cores: quick 1 s, default 10 s, full 1 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from ballpiston.client import Client
 from ballpiston.figures.parts import style
@@ -49,7 +46,7 @@ def measure(
 
 def merge(bins: Table, merged: int) -> Table:
     """Histograms with `merged` neighbouring bins in one. Densities are means over a bin; `error` is
-    the standard error."""
+    the standard error; that of an empty bin is from the exact law."""
     keys = ("delta", "epsilon", "exponent", "sigma")
     found = distinct(zip(*(bins[name] for name in keys)))
     return stacked(_merged(rows(bins, **dict(zip(keys, key))), keys, merged) for key in found)
@@ -61,11 +58,13 @@ def _merged(bins: Table, keys: tuple[str, ...], merged: int) -> Table:
     sizes = ends - starts + 1
     lower, upper = bins["lower"][starts], bins["upper"][ends]
     counts = np.add.reduceat(bins["count"], starts)
+    exact = np.add.reduceat(bins["exact_density"], starts) / sizes
+    total = bins["samples"][0] * (upper - lower)  # the count at the density 1
     return {name: bins[name][starts] for name in keys} | {
         "alpha": (lower + upper) / 2,
         "density": np.add.reduceat(bins["density"], starts) / sizes,
-        "error": np.sqrt(counts) / (bins["samples"][0] * (upper - lower)),
-        "exact_density": np.add.reduceat(bins["exact_density"], starts) / sizes,
+        "error": np.sqrt(np.where(counts > 0, counts, exact * total)) / total,
+        "exact_density": exact,
     }
 
 
@@ -80,23 +79,25 @@ def draw(tables: Tables) -> Figure:
     figure, panels = style.panels(size, len(energies), len(deltas), **shared)
     for row, epsilon in zip(panels, energies):
         for axes, delta in zip(row, deltas):
-            for sigma, _, colour in _SIGNS:
-                _draw_law(axes, rows(data, delta=delta, epsilon=epsilon, sigma=sigma), colour)
+            for sigma, sign, colour in _SIGNS:
+                law = rows(data, delta=delta, epsilon=epsilon, sigma=sigma)
+                _draw_law(axes, law, colour, f"σ = {sign}1")
         row[0].set_ylim(0, None)
         style.inside(row[0], 0.04, 0.88, f"ε = {epsilon:g}")
     for axes, delta in zip(panels[0], deltas):
         axes.set_title(f"δ = {delta:g}", loc="center")
     panels[0, 0].set_xlim(-np.pi, np.pi)
     panels[0, 0].set_xticks([-np.pi / 2, 0, np.pi / 2], ["−π/2", "0", "π/2"])
-    style.outer_labels(panels, "angle α", "density")
-    lines: list[Any] = [style.line_handle(f"σ = {sign}1", colour) for _, sign, colour in _SIGNS]
-    fills = [Patch(color=c, alpha=0.25, label=f"h$^{{(1)}}$, σ = {s}1") for _, s, c in _SIGNS]
-    style.top_legend(figure, lines + fills)
+    figure.supxlabel("angle α")
+    figure.supylabel("density")
+    style.top_legend(figure, panels[0, 0].get_legend_handles_labels()[0])
     return figure
 
 
-def _draw_law(axes: Any, law: Table, colour: str) -> None:
+def _draw_law(axes: Any, law: Table, colour: str, label: str) -> None:
     low, high = law["density"] - law["error"], law["density"] + law["error"]
-    axes.fill_between(law["alpha"], law["exact_density"], color=colour, alpha=0.25, linewidth=0)
-    axes.fill_between(law["alpha"], low, high, color=colour, alpha=0.35, linewidth=0)
-    axes.plot(law["alpha"], law["density"], color=colour, linewidth=1.2)
+    area: dict[str, Any] = {"color": colour, "linewidth": 0}
+    axes.plot(law["alpha"], law["density"], color=colour, linewidth=1.2, label=label)
+    exact = law["exact_density"]
+    axes.fill_between(law["alpha"], exact, alpha=0.25, label=f"h$^{{(1)}}$, {label}", **area)
+    axes.fill_between(law["alpha"], low, high, alpha=0.35, **area)

@@ -2,10 +2,8 @@
 
 The density W/f of the piston's energy after a collision, for several energies before it. Lines: the
 exact kernel, which diverges at 0 and at the largest energy, 1/2 - epsilon. Points: collisions of
-the billiard, with one standard error. By default it takes half a minute of one core.
+the billiard, with one standard error. Time on two cores: quick 2 s, default 4 s, full 15 s.
 """
-
-from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import Any
@@ -14,14 +12,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ballpiston.client import Client
+from ballpiston.collisions import Records
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, stacked
+from ballpiston.figures.parts.tables import Table, Tables, rows, stacked
 from ballpiston.parameter_lists import Numbers
 
-EFFORT = {"quick": {"orbits": 3, "bins": 8}, "full": {"orbits": 1000, "bins": 40}}
+EFFORT = {"quick": {"collisions": 1e4, "bins": 8}, "full": {"collisions": 3e6, "bins": 40}}
 
-_EVENTS = 20_000  # of each orbit
 _WINDOW = 0.0125  # half width of the interval of energies around each epsilon
 _MARGIN = 4  # windows below the largest outgoing energy, without bins
 _HIGHEST = 3.2  # density of a panel, in units of its mean
@@ -34,12 +32,11 @@ def measure(
     delta: float = 0.3,
     epsilon: Numbers = "0.05,0.125,0.25,0.4",
     seed: int = 0,
-    orbits: int = 50,
+    collisions: float = 2e5,
     bins: int = 20,
 ) -> Tables:
-    """The exact densities at 499 energies after a collision, and the measured ones in bins. The
-    first orbit has the seed `seed`, the next ones have the next seeds. W depends neither on rho nor
-    on delta."""
+    """The exact densities at 499 energies after a collision, and the measured ones in bins. W
+    depends neither on rho nor on delta."""
     if not 1 <= bins <= 10_000:
         raise ValueError(f"bins is {bins}; permitted: 1 to 10000")
     forms = client.analytic(rho, delta, epsilon, outgoing_epsilon="0.001:0.499:499")
@@ -53,38 +50,24 @@ def measure(
         }
         for energy, rate, kernel in zip(energies, forms["f"][0], forms["kernel"][0])
     ]
-    collisions = np.concatenate(
-        [_collisions(client, rho, delta, seed + k) for k in range(orbits)]
-    )
-    return {
-        "kernel-exact": stacked(exact),
-        "kernel-measured": densities(energies, collisions, bins),
-    }
+    pair = {"rho": rho, "delta": delta, "model": "billiard", "seed": seed}
+    hits = client.sample("equilibrium", collisions=collisions, **pair).all()
+    return {"kernel-exact": stacked(exact), "kernel-measured": densities(energies, hits, bins)}
 
 
-def _collisions(client: Client, rho: float, delta: float, seed: int) -> FloatArray:
-    """(collisions, 2): the piston's energies before and after each collision of one orbit."""
-    names = ("piston_energy_before", "piston_energy")
-    orbit = client.trace_arrays("event", *names, rho=rho, delta=delta, events=_EVENTS, seed=seed)
-    met = orbit["event"] == "ball_piston"
-    return np.column_stack([orbit[name][met] for name in names])
-
-
-def densities(energies: Iterable[float], collisions: FloatArray, bins: int) -> Table:
+def densities(energies: Iterable[float], collisions: Records, bins: int) -> Table:
     """Of the energy after the collisions whose energy before is near each of the energies.
 
     The bins have equal widths in u = sqrt(2 epsilon) after the collision, because the density of u
     is finite at 0. They end four windows below the largest outgoing energy, 1/2 - epsilon, where W
     diverges: nearer to it, the mean over a window is above W by more than 2 %. Energies without a
-    collision or without a bin are left out."""
-    return stacked(
-        part for energy in energies if (part := _densities_at(energy, collisions, bins))
-    )
+    collision or without a bin are left out. An empty bin has the error of one collision."""
+    return stacked(part for energy in energies if (part := _densities_at(energy, collisions, bins)))
 
 
-def _densities_at(energy: float, collisions: FloatArray, bins: int) -> dict[str, Any]:
-    before, after = collisions.T
-    chosen = after[np.abs(before - energy) < _WINDOW]
+def _densities_at(energy: float, collisions: Records, bins: int) -> dict[str, Any]:
+    is_near = np.abs(collisions["piston_energy"] - energy) < _WINDOW
+    chosen = collisions["piston_energy_after"][is_near]
     end = 1 - 2 * (energy + _MARGIN * _WINDOW)
     if end <= 0 or not len(chosen):
         return {}
@@ -96,7 +79,7 @@ def _densities_at(energy: float, collisions: FloatArray, bins: int) -> dict[str,
         "epsilon": energy,
         "outgoing": u**2 / 2,
         "density": counts / scale,
-        "standard_error": np.sqrt(counts) / scale,
+        "standard_error": np.sqrt(np.maximum(counts, 1)) / scale,
         "count": counts,
         "samples": len(chosen),
     }
@@ -120,6 +103,7 @@ def draw(tables: Tables) -> Figure:
         # Left or right of the curve that rises at 1/2 - epsilon.
         style.inside(axes, 0.35 if energy < 0.2 else 0.85, 0.9, label, ha="center")
     panels[0, 0].set_xlim(0, 0.5)
-    style.outer_labels(panels, "piston energy after, ε'", "W(ε, ε')/f(ε)")
+    figure.supxlabel("piston energy after, ε'")
+    figure.supylabel("W(ε, ε')/f(ε)")
     style.remove_empty(panels, len(energies))
     return figure

@@ -10,8 +10,6 @@ The tables: `markov-test-excess` has the points, `-decay` their means over octav
 the comparison of oscillating models (parts/oscillation.py), `-maxima` the maxima of the points.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -21,7 +19,7 @@ from matplotlib.figure import Figure
 from ballpiston.client import Client
 from ballpiston.figures.parts import oscillation, style
 from ballpiston.figures.parts.asking import ENERGIES, RHO, divergences, first_hits
-from ballpiston.figures.parts.tables import Table, Tables, distinct, pick, rows, stacked, table
+from ballpiston.figures.parts.tables import Table, Tables, distinct, pick, rows, stacked
 from ballpiston.parameter_lists import Numbers
 
 EFFORT: dict[str, dict[str, Any]] = {
@@ -71,32 +69,26 @@ def decay(points: Table) -> Table:
     for (epsilon, exponent), series in oscillation.series_of(points):
         # With the factor a delta at the border of two octaves stays in its octave despite rounding.
         octave = np.floor(np.log2(largest / series["delta"]) * (1 - 1e-9)).astype(int)
-        first = first_error = 0.0
-        for k in sorted(set(octave)):
-            chosen = octave == k
-            count = int(chosen.sum())
-            mean = series["excess"][chosen].mean()
-            error = np.sqrt(np.sum(series["standard_error"][chosen] ** 2)) / count
-            ratio = ratio_error = np.nan
-            if k == 0:
-                first, first_error = mean, error
-            elif first > 3 * first_error:
-                ratio = mean / first
-                ratio_error = np.hypot(error, ratio * first_error) / first
-            found.append(
-                {
-                    "epsilon": epsilon,
-                    "exponent": exponent,
-                    "lower_delta": largest / 2.0 ** (k + 1),
-                    "upper_delta": largest / 2.0**k,
-                    "points": count,
-                    "mean_excess": mean,
-                    "standard_error": error,
-                    "ratio": ratio,
-                    "ratio_error": ratio_error,
-                }
-            )
-    return table(found)
+        count = np.bincount(octave)
+        k = np.flatnonzero(count)
+        mean = np.bincount(octave, series["excess"])[k] / count[k]
+        error = np.sqrt(np.bincount(octave, series["standard_error"] ** 2)[k]) / count[k]
+        has_ratio = (k > 0) & (k[0] == 0) & (mean[0] > 3 * error[0])
+        ratio = np.where(has_ratio, mean / mean[0], np.nan)
+        found.append(
+            {
+                "epsilon": epsilon,
+                "exponent": exponent,
+                "lower_delta": largest / 2.0 ** (k + 1),
+                "upper_delta": largest / 2.0**k,
+                "points": count[k],
+                "mean_excess": mean,
+                "standard_error": error,
+                "ratio": ratio,
+                "ratio_error": np.hypot(error, ratio * error[0]) / mean[0],
+            }
+        )
+    return stacked(found)
 
 
 def maxima(points: Table) -> Table:
@@ -164,13 +156,14 @@ def draw(tables: Tables) -> Figure:
     for axes, exponent in zip(panels.flat, exponents):
         style.level(axes, 0)
         joined: dict[str, Any] = {"fmt": "o-", "linewidth": 1, "markersize": 3}
-        for part, colour, _ in style.series(rows(data, exponent=exponent), "epsilon", "ε"):
+        for part, *shown in style.series(rows(data, exponent=exponent), "epsilon", "ε"):
             error = part["standard_error"]
-            style.error_points(axes, part["delta"], part["excess"], error, colour, **joined)
+            style.error_points(axes, part["delta"], part["excess"], error, *shown, **joined)
         law = ", the equilibrium law" if exponent == 1 else ""
         style.inside(axes, 0.03, 0.92, f"n = {exponent:g}{law}")
         style.plain_log_ticks(axes.xaxis, (0.001, 0.003, 0.01, 0.03, 0.05, 0.1, 0.15, 0.2, 0.3))
-    style.outer_labels(panels, "δ", "relative entropy − noise floor")
+    figure.supxlabel("δ")
+    figure.supylabel("relative entropy − noise floor")
     style.remove_empty(panels, len(exponents))
-    style.top_legend(figure, style.point_handles(style.series(data, "epsilon", "ε")))
+    style.top_legend(figure, panels[0, 0].get_legend_handles_labels()[0])
     return figure

@@ -8,8 +8,6 @@ orbits, from the master equation, is above the panel.
 Time on two cores: quick 1 s, default 10 s, full 2 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -105,11 +103,8 @@ def draw(tables: Tables) -> Figure:
     panels[0, 0].set_xlim(0, 0.5)
     for axes in panels[-1]:
         axes.set_xlabel("energy of the piston ε")
-    handles = [style.line_handle("master equation", style.BLACK, linewidth=1)]
-    for k, (model, delta) in enumerate(series):
-        label = "jump process" if model == "markov" else f"δ = {delta:g}"
-        handles.append(style.point_handle(label, style.colour(k)))
-    style.top_legend(figure, handles)
+    handles, _ = panels[0, 0].get_legend_handles_labels()
+    style.top_legend(figure, handles, markerscale=2)
     return figure
 
 
@@ -120,10 +115,12 @@ def _draw_law(upper: Any, lower: Any, law: Table, series: list[Any]) -> None:
         place = part["lower"] + (k + 0.5) / len(series) * (part["upper"] - part["lower"])
         seen = part["density"] > 0
         dots: dict[str, Any] = {"color": style.colour(k), "markersize": 2}
-        upper.semilogy(place[seen], part["density"][seen], "o", **dots)
+        label = "jump process" if model == "markov" else f"δ = {delta:g}"
+        upper.semilogy(place[seen], part["density"][seen], "o", label=label, **dots)
         style.error_points(lower, place, part["ratio"], part["ratio_error"], **dots)
     edges = [*part["lower"], part["upper"][-1]]
-    upper.stairs(part["exact"], edges, baseline=None, color=style.BLACK, linewidth=1)
+    exact: dict[str, Any] = {"color": style.BLACK, "linewidth": 1, "label": "master equation"}
+    upper.stairs(part["exact"], edges, baseline=None, **exact)
     style.level(lower, 1)
 
 

@@ -5,8 +5,6 @@ onto one curve, tau_bp/tau(epsilon) = phi(epsilon). Inset: the collision rate 1/
 delta. Time on two cores: quick 1 s, default 2 s, full 3 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -68,9 +66,7 @@ def draw(tables: Tables) -> Figure:
         tau = rows(inset, delta=part["delta"][0])["exact"][0]
         _draw_rates(axes, part, "epsilon", tau, color=colour, label=label)
     phi = tables["mean-free-time-phi"]
-    axes.plot(
-        phi["epsilon"], phi["phi"], color=style.BLACK, label="exact φ$_{bp}$(ε)", zorder=3
-    )
+    axes.plot(phi["epsilon"], phi["phi"], color=style.BLACK, label="exact φ$_{bp}$(ε)", zorder=3)
     axes.set(xlim=(0, 0.5), xlabel="piston energy ε", ylabel="τ$_{bp}$/τ(ε)")
     axes.legend(loc="lower right")
     _draw_inset(axes.inset_axes((0.13, 0.5, 0.38, 0.46)), inset, tables["mean-free-time-rate"])

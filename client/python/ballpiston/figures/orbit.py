@@ -5,8 +5,6 @@ Above right, the energies, which change only where ball and piston collide (circ
 positions of both along the piston's axis.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -34,17 +32,11 @@ def measure(
     """The start and all events of each body, and one row with the geometry. delta is large, so that
     ball and piston collide often."""
     start, *orbit = client.trace(rho=rho, delta=delta, seed=seed, events=events)
-    tables = {
-        f"orbit-{body}": table(
-            [{"time": 0.0, "event": "start"} | {n: start[f"{body}s"][0][n] for n in _FIELDS}]
-            + [
-                {"time": e["time"], "event": e["event"]} | {n: e[f"{body}_{n}"] for n in _FIELDS}
-                for e in orbit
-                if body in e
-            ]
-        )
-        for body in ("ball", "piston")
-    }
+    tables = {}
+    for body in ("ball", "piston"):
+        first = start[f"{body}s"][0] | {"time": 0.0, "event": "start"}
+        later = [e | {name: e[f"{body}_{name}"] for name in _FIELDS} for e in orbit if body in e]
+        tables[f"orbit-{body}"] = table([first, *later], ("time", "event", *_FIELDS))
     geometry = table([{name: start[name] for name in ("rho", "delta", "lambda", "tip")}])
     return tables | {"orbit-geometry": geometry}
 

@@ -12,10 +12,7 @@ All values of a line come from the same orbits. Therefore neighbouring points ha
 statistical error. Time on two cores: quick 3 s, default 25 s, full 4 min.
 """
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -32,22 +29,22 @@ EFFORT = {
 }
 
 _BATCHES = 8  # of each orbit; their scatter gives the standard errors
+_FEWEST_GAPS = 50  # for which an error is stated
 _HALF_WIDTH = 0.02  # a conditional rate is the rate at all energies within epsilon +- half_width
 _ENERGIES = 20  # the exact conditional rate is averaged over this number of energies
 _LENGTHS = 1e-4 * 10 ** (np.arange(17) / 4)  # of the windows, in units of the mean free time
 _ASIDE = 1.12  # the points of successive energies are shifted in time by this factor
 
 
-@dataclass(frozen=True)
-class Kind:
-    """A kind of events: its name, the energies of the piston (all, if the name is not
+class Kind(NamedTuple):
+    """A kind of events, the energies of the piston from `lower` to `upper` (all, if the kind is not
     "conditional"), and its exact rate."""
 
-    name: str
+    kind: str
     epsilon: float
     lower: float
     upper: float
-    rate: float
+    exact: float
 
 
 def measure(
@@ -62,6 +59,8 @@ def measure(
 ) -> Tables:
     """The rates P(t)/t of each kind of events. The first orbit has the seed `seed`, the next ones
     have the next seeds."""
+    if events < _BATCHES:
+        raise ValueError(f"events is {events}; permitted: {_BATCHES} to 1000000")
     kinds = _kinds(client, rho, delta, epsilon)
     batches: dict[Kind, list[FloatArray]] = {kind: [] for kind in kinds}
     names = ("time", "event", "piston_energy_before")
@@ -69,8 +68,12 @@ def measure(
         orbit = client.trace_arrays(*names, rho=rho, delta=delta, seed=seed + k, events=events)
         for kind, found in batches.items():
             found += batches_of_gaps(orbit, kind)
-    measured = {kind: found for kind, found in batches.items() if any(map(len, found))}
-    return {"rates": stacked(_rates(kind, found) for kind, found in measured.items())}
+    measured = []
+    for kind, found in batches.items():
+        lengths = _LENGTHS / kind.exact
+        rate, error = rate_of_windows(found, lengths)
+        measured.append(kind._asdict() | {"t": lengths, "rate": rate, "standard_error": error})
+    return {"rates": stacked(measured)}
 
 
 def _kinds(client: Client, rho: float, delta: float, epsilon: Numbers) -> list[Kind]:
@@ -78,19 +81,17 @@ def _kinds(client: Client, rho: float, delta: float, epsilon: Numbers) -> list[K
     met, ball, piston = (
         1 / float(forms[f"tau_{name}"][0]) for name in ("ball_piston", "ball_wall", "piston_wall")
     )
-    kinds = [
-        Kind("all", np.nan, 0, 0.5, met + ball + piston),
-        Kind("ball_piston", np.nan, 0, 0.5, met),
-    ]
-    for middle in forms["epsilon"][0]:
-        lower, upper = max(middle - _HALF_WIDTH, 0), min(middle + _HALF_WIDTH, 0.5)
-        # In equilibrium u = sqrt(2 epsilon) is uniform. Therefore energies that are evenly spaced
-        # in u have equal weights.
-        edges = np.linspace(np.sqrt(2 * lower), np.sqrt(2 * upper), _ENERGIES + 1)
-        u = (edges[:-1] + edges[1:]) / 2
-        times = client.analytic(rho, delta, u**2 / 2)["mean_free_time_conditional"][0]
-        kinds.append(Kind("conditional", float(middle), lower, upper, float(np.mean(1 / times))))
-    return kinds
+    kinds = [Kind("all", np.nan, 0, 0.5, met + ball + piston)]
+    kinds += [Kind("ball_piston", np.nan, 0, 0.5, met)]
+    middle = forms["epsilon"][0]
+    lower, upper = np.maximum(middle - _HALF_WIDTH, 0), np.minimum(middle + _HALF_WIDTH, 0.5)
+    # In equilibrium u = sqrt(2 epsilon) is uniform. Therefore energies that are evenly spaced in u
+    # have equal weights.
+    edges = np.linspace(np.sqrt(2 * lower), np.sqrt(2 * upper), _ENERGIES + 1)
+    u = (edges[:-1] + edges[1:]) / 2
+    times = client.analytic(rho, delta, u.ravel() ** 2 / 2)["mean_free_time_conditional"][0]
+    rate = (1 / times.reshape(u.shape)).mean(axis=0)
+    return kinds + [Kind("conditional", *numbers) for numbers in zip(middle, lower, upper, rate)]
 
 
 def batches_of_gaps(orbit: Table, kind: Kind) -> list[FloatArray]:
@@ -98,12 +99,12 @@ def batches_of_gaps(orbit: Table, kind: Kind) -> list[FloatArray]:
     belongs to the batch of its end. The piston's energy is constant during a gap between
     ball-piston events. Therefore the gaps of one energy give the conditional probability."""
     batch = np.arange(len(orbit["time"])) // (len(orbit["time"]) // _BATCHES)
-    if kind.name == "all":
+    if kind.kind == "all":
         chosen = np.ones(len(batch), dtype=bool)
     else:
         chosen = orbit["event"] == "ball_piston"
     gaps, batch = np.diff(orbit["time"][chosen], prepend=0.0), batch[chosen]
-    if kind.name == "conditional":
+    if kind.kind == "conditional":
         energy = orbit["piston_energy_before"][chosen]
         near = (energy >= kind.lower) & (energy < kind.upper)
         gaps, batch = gaps[near], batch[near]
@@ -117,28 +118,18 @@ def rate_of_windows(
 
     A window of length t that begins at a uniformly random time contains an event with the
     probability P(t), the sum of min(gap, t) over the gaps between events, divided by the sum of the
-    gaps. The standard error is that of a ratio of sums over batches. All t use the same gaps: their
-    errors are not independent."""
+    gaps. The standard error is that of a ratio of sums over batches; it is NaN for fewer than
+    _FEWEST_GAPS gaps. All t use the same gaps: their errors are not independent. Without a gap the
+    value is NaN, too."""
     hits = np.array([[np.minimum(gaps, t).sum() for t in lengths] for gaps in batches])
     times = np.array([gaps.sum() for gaps in batches])
-    probability = hits.sum(axis=0) / times.sum()
+    total = times.sum() or np.nan
+    probability = hits.sum(axis=0) / total
     scatter = np.sum((hits - np.outer(times, probability)) ** 2, axis=0)
     count = len(batches)
-    error = np.sqrt(scatter * count / (count - 1)) / times.sum()
+    is_known = sum(map(len, batches)) >= _FEWEST_GAPS
+    error = np.sqrt(scatter * count / (count - 1)) / total if is_known else np.nan * lengths
     return probability / lengths, error / lengths
-
-
-def _rates(kind: Kind, batches: list[FloatArray]) -> dict[str, Any]:
-    lengths = _LENGTHS / kind.rate
-    rate, error = rate_of_windows(batches, lengths)
-    return {
-        "kind": kind.name,
-        "epsilon": kind.epsilon,
-        "t": lengths,
-        "rate": rate,
-        "standard_error": error,
-        "exact": kind.rate,
-    }
 
 
 @style.styled

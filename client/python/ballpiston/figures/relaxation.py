@@ -12,8 +12,6 @@ d  the difference of b from the limit
 Time on two cores: quick 2 s, default 25 s, full 4 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.figure import Figure

@@ -20,8 +20,6 @@ counterclockwise. The invariant density is uniform in sin(phi), and proportional
 piston's stroke that is on the right of s. Time: default 25 s, full 60 s of a core.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -11,8 +11,6 @@ b  the growth of Var(Q)/t over the law, at each cold temperature and at each del
 The program `slow_pistons` measures a. Time on one core: quick 20 s, default 3 min, full 20 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -23,7 +21,7 @@ from ballpiston.figures.parts import fits, style
 from ballpiston.figures.parts.asking import RHO, answer
 from ballpiston.figures.parts.charge import combined
 from ballpiston.figures.parts.programs import table_of
-from ballpiston.figures.parts.tables import Table, Tables, curves, rows, stacked, table
+from ballpiston.figures.parts.tables import Table, Tables, curves, pick, rows, stacked, table
 from ballpiston.parameter_lists import Numbers, number_list
 from ballpiston.point import Point
 from ballpiston.result import Result
@@ -39,6 +37,7 @@ _FROM, _TO = 3, 300  # the windows of a fit: 4 to 256 stretches, which are half 
 _SHOWN = slice(2, 10)  # of the windows, from 4 stretches on
 _CURVE = "charge_cumulant_2_by_window"
 _COLD = 0.01  # where delta varies, and of the jump process
+_NOT_MEASURED = "not measured: too few samples"
 
 
 def measure(
@@ -97,16 +96,17 @@ def _growth_and_law(point: Point, idle: Table) -> dict[str, float]:
 
 def _growth(point: Point) -> dict[str, float]:
     """A fit of v(2 t) - v(t) = growth ln 2 + b/t, where v is Var(Q)/t; and v at the first window of
-    the fit, as `variance`."""
+    the fit, as `variance`. NaN if too few windows were measured."""
     found = combined(point, 2, longer=1)
-    shortest = found["time"].min()
-    is_fitted = (found["time"] > _FROM * shortest) & (found["time"] < _TO * shortest)
-    time = found["time"][is_fitted]
+    shortest = found["time"].min(initial=np.inf)
+    fitted = pick(found, (found["time"] > _FROM * shortest) & (found["time"] < _TO * shortest))
+    time = fitted["time"]
     terms = np.column_stack([np.full(len(time), np.log(2)), 1 / time])
-    fit = fits.linear(terms, found["value"][is_fitted], found["standard_error"][is_fitted])
-    at = point.parameters
-    row = {"delta": float(at["delta"]), "cold": float(at["cold"]), "from": time.min()}
-    return row | {"variance": found["shorter"][is_fitted][0]} | fit.row("growth", "b")
+    fit = fits.linear(terms, fitted["value"], fitted["standard_error"])
+    row: dict[str, float] = {name: float(point.parameters[name]) for name in ("delta", "cold")}
+    for name, column in (("from", "time"), ("variance", "shorter")):
+        row[name] = fitted[column][0] if len(time) else np.nan
+    return row | fit.row("growth", "b")
 
 
 @style.styled
@@ -120,6 +120,8 @@ def draw(tables: Tables) -> Figure:
     x = np.arange(len(found["ratio"]))
     style.error_points(right, x, found["ratio"], found["ratio_error"], style.BLUE)
     labels = [f"{delta:g}\n{cold:g}" for delta, cold in zip(found["delta"], found["cold"])]
+    if np.isnan(found["ratio"]).all():
+        style.inside(right, 0.5, 0.6, _NOT_MEASURED, ha="center")
     right.set_xticks(x, labels)
     right.minorticks_off()
     right.set(xlabel="δ, cold temperature", xlim=(-0.5, len(x) - 0.5))
@@ -127,19 +129,21 @@ def draw(tables: Tables) -> Figure:
 
 
 def _draw_windows(axes: Any, windows: Table, delta: float) -> None:
-    windows = rows(windows, delta=delta)
-    measured = np.unique(rows(windows, model="billiard")["cold"])
-    cases = [("billiard", cold) for cold in measured] + [("markov", _COLD)]
+    windows = rows(windows, delta=delta) if windows else {"model": np.empty(0), "cold": np.empty(0)}
+    cases = sorted(set(zip(windows["model"], windows["cold"])))  # the jump process last
     for k, (model, cold) in enumerate(cases):
-        part = rows(windows, model=model, cold=cold)
+        shown = pick(rows(windows, model=model, cold=cold), _SHOWN)
+        if not len(shown["time"]):
+            continue
         label = f"cold {cold:g}" + (", jump process" if model == "markov" else "")
-        shown = {n: part[n][_SHOWN] for n in ("time", "value", "standard_error")}
         first = shown["value"][0]
         variance = shown["standard_error"] ** 2  # changes are independent of `first`
         change_error = np.sqrt((variance - variance[0]).clip(0))
         value, error = shown["value"] / first, change_error / first
         dots: dict[str, Any] = {"label": label, "markersize": 4, "linestyle": "-", "linewidth": 0.8}
         style.error_points(axes, shown["time"], value, error, style.colour(k), **dots)
-    axes.set_xscale("log")
-    axes.set(xlabel="t")
-    axes.legend()
+    axes.set(xlabel="t", xscale="log")
+    if axes.lines:
+        axes.legend()
+    else:
+        style.inside(axes, 0.5, 0.5, _NOT_MEASURED, ha="center")

@@ -7,8 +7,6 @@ billiard, and its limit for rare collisions, which finally decays at the smalles
 billiard's tail comes from slow pistons. By default it takes half a minute of two cores.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.figure import Figure

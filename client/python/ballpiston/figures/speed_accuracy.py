@@ -18,21 +18,18 @@ precision. Panels without data are left out.
 Time on one core: quick 3 s, default 1 min, full 20 min.
 """
 
-from __future__ import annotations
-
-import csv
 import os
-from dataclasses import dataclass
 from typing import Any
 
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO
-from ballpiston.figures.parts.programs import output_of
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, pick, rows, table
+from ballpiston.figures.parts.programs import table_of
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, pick, rows
 
 EFFORT = {"quick": {"seconds": 0.03}, "full": {"seconds": 10.0}}
 
@@ -55,7 +52,6 @@ _FEWEST_SAMPLES = 64  # errors from fewer samples are too uncertain and are not 
 _FEWEST_ORBITS = 256  # the same for e
 _RESOLVED = 2.0  # a bias of the limit is at least this number of statistical errors
 _SMALL = {"fontsize": 9}
-_TEXTS = ("method", "quantity")
 
 
 def measure(
@@ -71,70 +67,40 @@ def measure(
     separate delta: 0.2, or the gas's bound if that is smaller. Panel e chooses among
     `relaxation_delta`, at most 8; if it is empty, among 0.2, 0.1, 0.05 and 0.025, as far as rho
     permits them. `seconds` are those of each method's largest run, 0.01 to 60."""
-    values = {"rho": rho, "delta": delta, "epsilon": epsilon, "seconds": seconds, "seed": seed}
-    arguments = [f"--{name}={value}" for name, value in values.items()]
-    styles = {"none": ["--progress=none"], "json": ["--progress=none"], "bar": ["--progress=bar"]}
-    arguments += styles.get(os.environ.get("BALLPISTON_PROGRESS", ""), [])
-    arguments.append(f"--relaxation-delta={relaxation_delta}")
-    return {"speed-accuracy": measurements(output_of("method_comparison", *arguments))}
+    values: dict[str, Any] = {"rho": rho, "delta": delta, "epsilon": epsilon, "seed": seed}
+    values |= {"seconds": seconds, "relaxation_delta": relaxation_delta}
+    styles = {"none": "none", "json": "none", "bar": "bar"}
+    if shown := styles.get(os.environ.get("BALLPISTON_PROGRESS", "")):
+        values["progress"] = shown
+    return {"speed-accuracy": table_of("method_comparison", **values)}
 
 
-def measurements(text: str) -> Table:
-    """The program's CSV; a value that does not exist is NaN."""
-    lines = csv.DictReader(text.splitlines())
-    return table(
-        {n: cell if n in _TEXTS else float(cell or "nan") for n, cell in line.items()}
-        for line in lines
-    )
-
-
-@dataclass(frozen=True)
-class Curve:
-    """The runs of a method at one time step (0 if it has none), the longest run last."""
-
-    method: str
-    time_step: float
-    runs: Table
-
-    @property
-    def colour(self) -> Any:
-        """Larger fixed steps have a lighter colour."""
-        if self.time_step > 0:
-            return _STEPS(0.25 - 0.18 * np.log10(self.time_step))
-        return _METHODS[self.method][1]
-
-    @property
-    def title(self) -> str:
-        if self.time_step > 0:
-            return f"Δt = {style.power_text(self.time_step)}"
-        return _METHODS[self.method][0]
-
-    @property
-    def bias(self) -> float:
-        """Of the longest run, if it is resolved."""
-        return float(self.runs["value"][-1] if self.runs["bias_resolved"][-1] == 1 else 0.0)
-
-    @property
-    def expected_error(self) -> FloatArray:
-        """sqrt(sigma^2 + bias^2) of each run."""
-        error: FloatArray = np.hypot(self.runs["own_error"], self.bias)
-        return error
-
-    @property
-    def error_of_error(self) -> FloatArray:
-        """One standard error of `expected_error` if the scatter is normal."""
-        chance = self.runs["own_error"] ** 2 / np.sqrt(2 * self.runs["samples"])
-        of_bias = self.bias * self.runs["statistical_error"][-1]
-        error: FloatArray = np.hypot(chance, of_bias) / self.expected_error
-        return error
-
-
-def curves_of(data: Table, quantity: str, fewest_samples: int = 1) -> list[Curve]:
-    """The methods that have runs of enough samples."""
+def curves_of(data: Table, quantity: str, fewest_samples: int = 1) -> list[style.Series]:
+    """The runs of enough samples of each method at each time step (0 if it has none), the longest
+    run last. Larger fixed steps have a lighter colour."""
     data = rows(data, quantity=quantity)
     data = pick(data, data["samples"] >= fewest_samples)
-    found = distinct(zip(data["method"], data["time_step"]))
-    return [Curve(m, s, rows(data, method=m, time_step=s)) for m, s in found if m in _METHODS]
+    found = []
+    for method, step in distinct(zip(data["method"], data["time_step"])):
+        title, colour = _METHODS.get(method, ("", ""))
+        if step > 0:
+            title, colour = f"Δt = {style.power_text(step)}", _STEPS(0.25 - 0.18 * np.log10(step))
+        if title:
+            found.append(style.Series(rows(data, method=method, time_step=step), colour, title))
+    return found
+
+
+def resolved_bias(runs: Table) -> tuple[float, float]:
+    """The bias of the longest run, if it is resolved, else 0, and its standard error."""
+    last = pick(runs, -1)
+    return float(last["value"] if last["bias_resolved"] == 1 else 0.0), last["statistical_error"]
+
+
+def expected_error(runs: Table, bias: float, error_of_bias: float) -> tuple[FloatArray, FloatArray]:
+    """sqrt(sigma^2 + bias^2) of each run, and its standard error if the scatter is normal."""
+    error = np.hypot(runs["own_error"], bias)
+    chance = runs["own_error"] ** 2 / np.sqrt(2 * runs["samples"])
+    return error, np.hypot(chance, bias * error_of_bias) / error
 
 
 @style.styled
@@ -167,7 +133,7 @@ def draw(tables: Tables) -> Figure:
     for axes in panels.flat:
         if not axes.has_data():
             axes.remove()
-    colours = {c.title: c.colour for q in distinct(data["quantity"]) for c in curves_of(data, q)}
+    colours = {c.label: c.colour for q in distinct(data["quantity"]) for c in curves_of(data, q)}
     handles = [style.point_handle(title, colours[title]) for title in sorted(colours)]
     style.top_legend(figure, handles, columns=6)
     figure.supxlabel(_parameters(data, has_gas), x=0.01, ha="left", fontsize=10)
@@ -188,63 +154,56 @@ def _parameters(data: Table, has_gas: bool) -> str:
 
 
 def _draw_errors(axes: Any, data: Table, quantity: str, by: str) -> None:
-    for curve in curves_of(data, quantity, _FEWEST_SAMPLES):
-        if curve.method in _OF_ERRORS:
-            errors = curve.expected_error, curve.error_of_error
-            style.error_points(axes, curve.runs[by], *errors, curve.colour, fmt="o-", markersize=3)
+    for runs, colour, _ in curves_of(data, quantity, _FEWEST_SAMPLES):
+        if runs["method"][0] in _OF_ERRORS:
+            errors = expected_error(runs, *resolved_bias(runs))
+            style.error_points(axes, runs[by], *errors, colour, fmt="o-", markersize=3)
     axes.set(xscale="log", yscale="log", ylabel="relative error")
     axes.set_xlabel("wall hits" if by == "wall_hits" else "time / s")
 
 
 def _note_closed_form(axes: Any, closed: Table) -> None:
     if len(closed["value"]):
-        time, error = duration(closed["work_seconds"][-1]), style.power_text(closed["value"][-1])
+        time = EngFormatter("s", places=0)(closed["work_seconds"][-1])
+        error = style.power_text(closed["value"][-1])
         style.inside(axes, 0.03, 0.05, f"closed form: {time}, error ≤ {error}", **_SMALL)
 
 
 def _note_lost_balls(axes: Any, data: Table) -> None:
     """The time steps that have no run of enough samples."""
-    shown = {c.time_step for c in curves_of(data, "heat-current", _FEWEST_SAMPLES)}
+    curves = curves_of(data, "heat-current", _FEWEST_SAMPLES)
+    shown = {runs["time_step"][0] for runs, _, _ in curves}
     steps = distinct(rows(data, method="fixed-step")["time_step"])
     lost = ", ".join(style.power_text(step) for step in steps if step not in shown)
     if lost:
         style.inside(axes, 0.03, 0.05, f"balls lost, or too slow: Δt = {lost}", **_SMALL)
 
 
-def duration(seconds: float) -> str:
-    """Such as 17 ms."""
-    for unit, name in ((1e-9, "ns"), (1e-6, "µs"), (1e-3, "ms"), (1.0, "s")):
-        count = seconds / unit
-        if count < 999.5 or name == "s":
-            return f"{count:.1f} {name}" if count < 9.95 else f"{count:.0f} {name}"
-    raise AssertionError("unreachable")
-
-
-def _draw_orbits(axes: Any, curves: list[Curve]) -> None:
+def _draw_orbits(axes: Any, curves: list[style.Series]) -> None:
     """Only the longest runs: the cost of a hit and the horizon do not depend on the number of
     orbits."""
     if not curves:
         return
     style.level(axes, 0, color=style.GREY)
-    for curve in curves:
-        run = pick(curve.runs, -1)
+    for runs, colour, _ in curves:
+        run = pick(runs, -1)
         cost = 1e9 * run["work_seconds"] / run["wall_hits"]
-        style.error_points(axes, cost, run["value"], run["own_error"], curve.colour, markersize=6)
+        style.error_points(axes, cost, run["value"], run["own_error"], colour, markersize=6)
     axes.set(xscale="log", xlabel="time of a wall hit / ns")
     axes.set_ylabel("wall hits until the orbit is wrong")
 
 
 def floors_of_limit(runs: Table) -> Table:
     """The error of the relaxation time that more work by the limit cannot reduce, at each delta,
-    the largest delta first. It is the limit's bias, or an upper bound of it: the spectrum's
-    deviation, which may be chance, plus _RESOLVED statistical errors."""
+    the largest delta first, and its standard error. It is the limit's bias, or an upper bound of
+    it: the spectrum's deviation, which may be chance, plus _RESOLVED statistical errors."""
     spectra = rows(runs, method="spectrum")
     first = np.unique(-spectra["delta"], return_index=True)[1]
     spectra = pick(spectra, first)
-    chance = _RESOLVED * spectra["statistical_error"]
-    is_bias = spectra["value"] >= chance
-    value = spectra["value"] + np.where(is_bias, 0.0, chance)
-    return {"delta": spectra["delta"], "value": value, "is_bias": is_bias}
+    error = spectra["statistical_error"]
+    is_bias = spectra["value"] >= _RESOLVED * error
+    value = spectra["value"] + np.where(is_bias, 0.0, _RESOLVED * error)
+    return {"delta": spectra["delta"], "value": value, "error": error, "is_bias": is_bias}
 
 
 def _draw_relaxation(axes: Any, data: Table) -> None:
@@ -253,7 +212,8 @@ def _draw_relaxation(axes: Any, data: Table) -> None:
     resolved = floors["delta"][floors["is_bias"]]
     chosen = resolved if len(resolved) else floors["delta"][:1]
     for delta, colour in zip(chosen, _DELTA_COLOURS):
-        bias = float(rows(floors, delta=delta)["value"][0])
+        floor = pick(floors, list(floors["delta"]).index(delta))
+        bias = floor["value"]
         axes.axhline(bias, color=colour, dashes=(3, 4), linewidth=1.2)
         spectrum = rows(runs, delta=delta, method="spectrum")["work_seconds"]
         label = f"spectrum, δ = {delta:g}"
@@ -261,15 +221,17 @@ def _draw_relaxation(axes: Any, data: Table) -> None:
         for method, name, line in (("markov", "limit", (0, (8, 4))), ("billiard", "billiard", "-")):
             part = rows(runs, delta=delta, method=method)
             part = pick(part, part["samples"] >= _FEWEST_ORBITS)
-            error = np.hypot(part["own_error"], bias if method == "markov" else 0)
-            dots = {"marker": "o", "markersize": 3, "label": f"{name}, δ = {delta:g}"}
-            axes.plot(part["work_seconds"], error, linestyle=line, color=colour, **dots)
+            biased = (bias, floor["error"]) if method == "markov" else (0.0, 0.0)
+            errors = expected_error(part, *biased)
+            label = f"{name}, δ = {delta:g}"
+            dots: dict[str, Any] = {"markersize": 3, "linestyle": line}
+            style.error_points(axes, part["work_seconds"], *errors, colour, label, **dots)
     axes.set(xscale="log", yscale="log", xlabel="time / s", ylabel="relative error")
     axes.margins(y=0.4)
     axes.legend(loc="upper left", ncol=2, handlelength=2.5, **_SMALL)
     bounds = ", ".join(
         f"δ = {delta:g}: ≤ {100 * value:.2g} %"
-        for delta, value, is_bias in zip(*floors.values())
+        for delta, value, is_bias in zip(floors["delta"], floors["value"], floors["is_bias"])
         if not is_bias
     )
     if bounds:

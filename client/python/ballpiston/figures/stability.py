@@ -9,8 +9,6 @@ It needs no server: the program `stability` counts the failures. With --full it 
 minutes on one core, else some seconds, with a small part of the starts.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from typing import Any

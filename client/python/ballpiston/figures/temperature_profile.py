@@ -6,8 +6,6 @@ T^(3/2) falls linearly. Lower panel: the difference from that line.
 Time on two cores: quick 2 s, default 50 s, full 15 min.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -69,9 +67,9 @@ def draw(tables: Tables) -> Figure:
     lengths = distinct(markov["cells"])
     figure, panels = style.panels((960, 840), 2, 1, sharex=True, height_ratios=(3, 2))
     x = np.linspace(0, 1, 200)
-    panels[0].plot(x, linear_law(hot, cold, x), color=style.BLACK)
+    line = {"color": style.BLACK, "label": "linear T$^{3/2}$"}
+    handles = panels[0].plot(x, linear_law(hot, cold, x), **line)
     style.level(panels[1], 0)
-    handles = [style.line_handle("linear T$^{3/2}$", style.BLACK)]
     for k, length in enumerate(lengths):
         handles.append(style.point_handle(f"N = {length}", style.colour(k)))
         for model in ("markov", "billiard"):

@@ -1,7 +1,5 @@
 """Questions of the figures to the server."""
 
-from __future__ import annotations
-
 import itertools
 import os
 import uuid

@@ -2,8 +2,6 @@
 the unit square around the cell. lambda = sqrt(4 rho^2 - 1) is the length of the overlap of two
 neighbouring discs; the cell's tips are at a distance 1/2 - lambda/2 from its middle."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ballpiston.figures.parts.tables import FloatArray
@@ -65,9 +63,7 @@ def overlap(rho: float) -> FloatArray:
     """Points (n, 2) of the lens in which the discs 1 and 2 overlap, at the right of the cell."""
     theta = np.arctan(overlap_length(rho))
     angles = np.linspace(theta, -theta, 49)
-    return np.concatenate(
-        [circle(rho, 1, np.pi / 2 + angles), circle(rho, 2, -np.pi / 2 + angles)]
-    )
+    return np.concatenate([circle(rho, 1, np.pi / 2 + angles), circle(rho, 2, -np.pi / 2 + angles)])
 
 
 def half_height(rho: float, depth: FloatArray) -> FloatArray:

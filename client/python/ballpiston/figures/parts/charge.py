@@ -9,8 +9,6 @@ correlation 2^((1 - n)/2), and the estimates of v(2 t) - v(t) at different t are
 estimates of growth(t) are correlated (`correlations`). The errors here assume this.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ballpiston.figures.parts.tables import FloatArray, Table

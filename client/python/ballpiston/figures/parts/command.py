@@ -4,8 +4,6 @@ Writes the figure's tables, NAME.svg and NAME.png to DIR and prints the paths of
 --edit only copies the figure's module to DIR. A module that lies there is used unchanged.
 """
 
-from __future__ import annotations
-
 import importlib
 import importlib.util
 import inspect
@@ -108,7 +106,7 @@ def _flags_of(name: str, module: ModuleType, common: _Parser) -> _Parser:
 
 
 def _variables(module: ModuleType) -> dict[str, inspect.Parameter]:
-    parameters = dict(inspect.signature(module.measure).parameters)
+    parameters = dict(inspect.signature(module.measure, eval_str=True).parameters)
     parameters.pop("client", None)
     return parameters
 
@@ -173,26 +171,26 @@ def _keywords(module: ModuleType, options: Namespace) -> dict[str, Any]:
     for keyword, parameter in _variables(module).items():
         text = getattr(options, keyword, None)
         if text is not None:
-            keywords[keyword] = _value(_flag(keyword), text, str(parameter.annotation))
+            keywords[keyword] = _value(_flag(keyword), text, parameter.annotation)
     return keywords
 
 
-def _value(flag: str, text: str, kind: str) -> Any:
+def _value(flag: str, text: str, kind: Any) -> Any:
     """The value of a flag. A list of numbers stays a text, which the client reads. A whole number has
     to be at least 1; only the seed may be 0."""
-    if kind == "bool":
+    if kind is bool:
         if text not in ("true", "false"):
             raise ValueError(f"{flag} has to be true or false, not {text!r}")
         return text == "true"
-    if kind not in ("float", "int"):
+    if kind not in (float, int):
         return text
     # A seed may have more digits than a float.
-    is_whole = kind == "int" and text.isdecimal()
+    is_whole = kind is int and text.isdecimal()
     values: list[float] = [int(text)] if is_whole else number_list(flag, text)
     if len(values) != 1:
         raise ValueError(f"{flag}: {text!r} is not one number")
     bounds = UINT64 if flag == "--seed" else (1, INT64[1])
-    return whole_number(flag, values[0], *bounds) if kind == "int" else values[0]
+    return whole_number(flag, values[0], *bounds) if kind is int else values[0]
 
 
 def _written(

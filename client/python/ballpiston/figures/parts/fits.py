@@ -1,7 +1,5 @@
 """Weighted least squares: linear models of values with known errors."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -30,30 +28,16 @@ def linear(
 ) -> Fit:
     """values = terms @ coefficients; one row of `terms` for each value. NaN if the values do not
     determine the coefficients. By default the values are independent."""
-
-    def whitened(scaled: FloatArray) -> FloatArray:
-        if correlation is None:
-            return scaled
-        white: FloatArray = np.linalg.inv(np.linalg.cholesky(correlation)) @ scaled
-        return white
-
-    weighted = whitened(terms / errors[:, np.newaxis])
-    rank = np.linalg.matrix_rank(weighted) if weighted.size else 0
-    if rank < terms.shape[1]:
-        unknown = np.full(terms.shape[1], np.nan)
+    white = np.column_stack([terms, values]) / errors[:, np.newaxis]
+    if correlation is not None:
+        white = np.linalg.solve(np.linalg.cholesky(correlation), white)
+    terms, values = white[:, :-1], white[:, -1]
+    count = terms.shape[1]
+    coefficients, _, rank, _ = np.linalg.lstsq(terms, values, rcond=None)
+    if rank < count:
+        unknown = np.full(count, np.nan)
         return Fit(unknown, unknown, np.nan, 0)
-    covariance = np.linalg.inv(weighted.T @ weighted)
-    coefficients = covariance @ weighted.T @ whitened(values / errors)
-    residuals = whitened((values - terms @ coefficients) / errors)
-    freedom = len(values) - terms.shape[1]
-    return Fit(coefficients, np.sqrt(np.diag(covariance)), float(residuals @ residuals), freedom)
-
-
-def powers(x: FloatArray, highest: int) -> FloatArray:
-    """The terms 1, x, ..., x^highest of a polynomial."""
-    return np.vander(x, highest + 1, increasing=True)
-
-
-def mean(values: FloatArray, errors: FloatArray, correlation: FloatArray | None = None) -> Fit:
-    """The weighted mean."""
-    return linear(np.ones((len(values), 1)), values, errors, correlation)
+    residuals = values - terms @ coefficients
+    variances = np.diag(np.linalg.inv(terms.T @ terms))
+    chi_squared = float(residuals @ residuals)
+    return Fit(coefficients, np.sqrt(variances), chi_squared, len(values) - count)

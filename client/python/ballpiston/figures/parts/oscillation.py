@@ -11,10 +11,7 @@ error `model_error`, which makes chi^2 of the best oscillating model equal to it
 freedom. All models have the same errors, so that their chi^2 can be compared.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -55,152 +52,97 @@ def fits(points: Table, synthetic: int) -> Table:
     1/synthetic. In rows with the exponent NaN, chi^2 is summed over the exponents, each with its
     own frequency and amplitude."""
     found: list[dict[str, Any]] = []
-    of_energy: dict[float, list[SeriesFit]] = {}
+    sums: list[dict[str, Any]] = []
     random = np.random.default_rng(_SEED)
-    for (epsilon, exponent), series in series_of(points):
-        above = series["excess"] > 3 * series["standard_error"]
-        if exponent == 1 or above.sum() < _FEWEST_POINTS:
-            continue
-        chosen = pick(series, above)
-        fit = SeriesFit.of(chosen)
-        of_energy.setdefault(epsilon, []).append(fit)
-        head = {"epsilon": epsilon, "exponent": exponent, "points": len(fit.log_delta)}
-        head |= {"smallest_delta": chosen["delta"].min(), "model_error": fit.model_error}
-        found += [head | row for row in fit.rows(random, synthetic)]
-    for epsilon, several in of_energy.items():
-        found += [{"epsilon": epsilon} | row for row in _sums(several)]
-    return table(found, _COLUMNS)
+    for epsilon in distinct(points["epsilon"]):
+        of_energy, of_powers = [], []
+        for (_, exponent), series in series_of(rows(points, epsilon=epsilon)):
+            above = series["excess"] > 3 * series["standard_error"]
+            if exponent == 1 or above.sum() < _FEWEST_POINTS:
+                continue
+            fitted, powers = _fits_of_series(pick(series, above), random, synthetic)
+            of_energy += [{"epsilon": epsilon, "exponent": exponent} | row for row in fitted]
+            of_powers.append(powers)
+        found += of_energy
+        sums += _sums(of_energy, np.sum(of_powers, axis=0)) if of_energy else []
+    return table(found + sums, _COLUMNS)
 
 
-@dataclass(frozen=True)
-class Basis:
-    """Orthonormal pairs of an oscillation in one variable, one pair for each frequency, orthogonal
-    to the power law, for data that were divided by their errors."""
+def _fits_of_series(
+    series: Table, random: np.random.Generator, synthetic: int
+) -> tuple[list[dict[str, Any]], FloatArray]:
+    """One row for the power law and for each oscillating model; chi^2 of all powers."""
+    x, y = np.log(series["delta"]), np.log(series["excess"])
+    error = series["standard_error"] / series["excess"]
+    scans = {name: _terms(x, power) for name, power in _MODELS.items()}
+    model_error = _model_error([terms for terms, _ in scans.values()], y, error)
+    error = np.hypot(error, model_error)
 
-    power: float
-    waves: FloatArray  # (frequencies, points, 2)
-    omegas: FloatArray
+    def best_of(data: FloatArray) -> dict[str, Any]:
+        """chi^2 of each model at its best frequency."""
+        return {n: _chi_squared(terms, error, data).min(axis=-1) for n, (terms, _) in scans.items()}
 
-    def amplitudes(self, whitened: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The components (..., 2) of data (..., points) at the best frequency, and its index."""
-        components: FloatArray = np.einsum("fpk,...p->...fk", self.waves, whitened)
-        best = np.argmax(np.sum(components**2, axis=-1), axis=-1)
-        chosen = np.take_along_axis(components, best[..., np.newaxis, np.newaxis], axis=-2)
-        return chosen[..., 0, :], best
+    head = {"points": len(x), "smallest_delta": series["delta"].min(), "model_error": model_error}
+    power_law = next(iter(scans.values()))[0][:1, :, :2]
+    plain = linear(power_law[0], y, error)
+    law = {"model": "power law", "b": plain.coefficients[1], "b_error": plain.errors[1]}
+    law |= {"chi_squared": plain.chi_squared, "degrees_of_freedom": plain.freedom}
+    found = [head | law]
+    noise = random.standard_normal((synthetic, len(x)))  # data of the power law, up to its terms
+    chi_of_noise, best_of_noise = _chi_squared(power_law, error, noise)[:, 0], best_of(noise)
+    chi = best_of(y / error)
+    powers = np.array([_chi_squared(_terms(x, p)[0], error, y / error).min() for p in _POWERS])
+    for name, (terms, omegas) in scans.items():
+        best = int(np.argmin(_chi_squared(terms, error, y / error)))
+        fit = linear(terms[best], y, error)
+        is_alarm = chi_of_noise / best_of_noise[name] >= plain.chi_squared / chi[name]
+        model = terms[best] @ fit.coefficients / error
+        again = best_of(model + random.standard_normal((synthetic, len(x))))
+        worse = again[name] - np.min(list(again.values()), axis=0)
+        row = {"model": name, "b": fit.coefficients[1], "b_error": fit.errors[1]}
+        row |= {"amplitude": np.hypot(*fit.coefficients[2:]), "period": 2 * np.pi / omegas[best]}
+        row |= {"chi_squared": chi[name], "gain": plain.chi_squared - chi[name]}
+        row |= {"degrees_of_freedom": fit.freedom - 1}  # omega
+        row |= {"false_alarm": is_alarm.mean()}
+        row |= {"p_value": np.mean(worse >= chi[name] - min(chi.values()))}
+        found.append(head | row | best_transform(powers))
+    return found, powers
 
-    def gain(self, whitened: FloatArray) -> FloatArray:
-        """The largest reduction of chi^2 over all frequencies."""
-        gain: FloatArray = np.sum(self.amplitudes(whitened)[0] ** 2, axis=-1)
-        return gain
+
+def _terms(log_delta: FloatArray, power: float) -> tuple[FloatArray, FloatArray]:
+    """The terms (frequencies, points, 4) of the model in delta^-power, and the frequencies."""
+    x = log_delta if power == 0 else np.exp(-power * log_delta)
+    most = len(x) / 3
+    cycles = 1.5 + 0.15 * np.arange(1 + max(0, int(np.ceil((most - 1.5) / 0.15 - 1e-9))))
+    omegas = 2 * np.pi * cycles / np.ptp(x)
+    phases = np.outer(omegas, x)
+    columns = np.broadcast_arrays(1.0, log_delta, np.cos(phases), np.sin(phases))
+    return np.stack(columns, axis=-1), omegas
 
 
-@dataclass(frozen=True)
-class SeriesFit:
-    """The fits of one series: log E at log(delta), with errors of log E."""
+def _chi_squared(terms: FloatArray, error: FloatArray, data: FloatArray) -> FloatArray:
+    """chi^2 (..., frequencies) of the best fits to data (..., points) that were divided by their
+    errors."""
+    basis, _ = np.linalg.qr(terms / error[:, np.newaxis])
+    explained = np.sum(np.einsum("fpk,...p->...fk", basis, data) ** 2, axis=-1)
+    chi: FloatArray = np.sum(data**2, axis=-1)[..., np.newaxis] - explained
+    return chi
 
-    log_delta: FloatArray
-    log_excess: FloatArray
-    weights: FloatArray  # 1/error, with the model error
-    model_error: float
-    bases: dict[str, Basis]
-    whitened: FloatArray  # log E over its errors, without the power law
-    chi_of_powers: FloatArray
 
-    @classmethod
-    def of(cls, series: Table) -> SeriesFit:
-        """Finds the model error by bisection."""
-        x, y = np.log(series["delta"]), np.log(series["excess"])
-        error = series["standard_error"] / series["excess"]
+def _model_error(models: list[FloatArray], log_excess: FloatArray, error: FloatArray) -> float:
+    """The common error with which chi^2 of the best model equals its degrees of freedom, by
+    bisection."""
 
-        def with_error(model_error: float) -> tuple[FloatArray, FloatArray, dict[str, Basis]]:
-            weights = 1 / np.hypot(error, model_error)
-            bases = {name: _basis(x, weights, power) for name, power in _MODELS.items()}
-            return weights, _without_power_law(weights * y, x, weights), bases
+    def is_too_small(candidate: float) -> bool:
+        total = np.hypot(error, candidate)
+        chi = min(_chi_squared(terms, total, log_excess / total).min() for terms in models)
+        return bool(chi > len(error) - 5)
 
-        def chi(model_error: float) -> float:
-            _, whitened, bases = with_error(model_error)
-            return float(whitened @ whitened - max(float(b.gain(whitened)) for b in bases.values()))
-
-        freedom = len(x) - 5
-        lower, upper = 0.0, _LARGEST_ERROR if chi(0) > freedom else 0.0
-        for _ in range(12 if upper > 0 else 0):
-            middle = (lower + upper) / 2
-            lower, upper = (middle, upper) if chi(middle) > freedom else (lower, middle)
-        weights, whitened, bases = with_error(upper)
-        gains = [_basis(x, weights, power).gain(whitened) for power in _POWERS]
-        chi_of_powers = whitened @ whitened - np.array(gains)
-        return cls(x, y, weights, upper, bases, whitened, chi_of_powers)
-
-    @property
-    def chi_of_power_law(self) -> float:
-        """chi^2 of the plain power law."""
-        return float(self.whitened @ self.whitened)
-
-    @property
-    def gains(self) -> dict[str, float]:
-        """By how much each oscillating model reduces chi^2."""
-        return {name: float(basis.gain(self.whitened)) for name, basis in self.bases.items()}
-
-    def rows(self, random: np.random.Generator, synthetic: int) -> list[dict[str, Any]]:
-        """One for the power law and one for each oscillating model."""
-        exponent, error, _ = self._parameters(None)
-        chi = self.chi_of_power_law
-        found = [_row("power law", chi, len(self.log_delta) - 2, b=exponent, b_error=error)]
-        alarms = self._false_alarms(random, synthetic)
-        for name, gain in self.gains.items():
-            exponent, error, amplitude = self._parameters(name)
-            _, best = self.bases[name].amplitudes(self.whitened)
-            found.append(
-                _row(
-                    name,
-                    chi - gain,
-                    len(self.log_delta) - 5,
-                    b=exponent,
-                    b_error=error,
-                    amplitude=amplitude,
-                    period=2 * np.pi / self.bases[name].omegas[best],
-                    gain=gain,
-                    false_alarm=alarms[name],
-                    p_value=self._p_value(name, random, synthetic),
-                    **best_transform(self.chi_of_powers),
-                )
-            )
-        return found
-
-    def _parameters(self, name: str | None) -> tuple[float, float, float]:
-        """b of a model with its error, and the amplitude c."""
-        columns = [np.ones_like(self.log_delta), self.log_delta]
-        if name is not None:
-            basis = self.bases[name]
-            _, best = basis.amplitudes(self.whitened)
-            x = basis.omegas[best] * _variable(self.log_delta, basis.power)
-            columns += [np.cos(x), np.sin(x)]
-        fit = linear(np.column_stack(columns), self.log_excess, 1 / self.weights)
-        amplitude = np.nan if name is None else float(np.hypot(*fit.coefficients[2:]))
-        return float(fit.coefficients[1]), float(fit.errors[1]), amplitude
-
-    def _noise(self, random: np.random.Generator, synthetic: int) -> FloatArray:
-        """(synthetic, points): data sets of the power law, without the power law."""
-        normal = random.standard_normal((synthetic, len(self.log_delta)))
-        return _without_power_law(normal, self.log_delta, self.weights)
-
-    def _false_alarms(self, random: np.random.Generator, synthetic: int) -> dict[str, float]:
-        noise = self._noise(random, synthetic)
-        chi = np.sum(noise**2, axis=1)
-        alarms = {}
-        for name, gain in self.gains.items():
-            gained = self.bases[name].gain(noise)
-            is_alarm = gained / (chi - gained) >= gain / (self.chi_of_power_law - gain)
-            alarms[name] = float(np.mean(is_alarm))
-        return alarms
-
-    def _p_value(self, name: str, random: np.random.Generator, synthetic: int) -> float:
-        basis = self.bases[name]
-        amplitudes, best = basis.amplitudes(self.whitened)
-        data = self._noise(random, synthetic) + basis.waves[best] @ amplitudes
-        most = np.max([other.gain(data) for other in self.bases.values()], axis=0)
-        worse = max(self.gains.values()) - self.gains[name]
-        return float(np.mean(most - basis.gain(data) >= worse))
+    lower, upper = 0.0, _LARGEST_ERROR if is_too_small(0) else 0.0
+    for _ in range(12 if upper > 0 else 0):
+        middle = (lower + upper) / 2
+        lower, upper = (middle, upper) if is_too_small(middle) else (lower, middle)
+    return upper
 
 
 def best_transform(chi_of_powers: FloatArray) -> dict[str, float]:
@@ -210,42 +152,13 @@ def best_transform(chi_of_powers: FloatArray) -> dict[str, float]:
     return {"transform": best, "transform_low": near.min(), "transform_high": near.max()}
 
 
-def _sums(several: list[SeriesFit]) -> list[dict[str, Any]]:
-    """Over the exponents of one energy."""
-    points = sum(len(fit.log_delta) for fit in several)
-    chi = sum(fit.chi_of_power_law for fit in several)
-    found = [_row("power law", chi, points - 2 * len(several), points=points)]
-    transform = best_transform(np.sum([fit.chi_of_powers for fit in several], axis=0))
-    for name in _MODELS:
-        gain = sum(fit.gains[name] for fit in several)
-        freedom = points - 5 * len(several)
-        found.append(_row(name, chi - gain, freedom, points=points, gain=gain, **transform))
+def _sums(fitted: list[dict[str, Any]], powers: FloatArray) -> list[dict[str, Any]]:
+    """Of each model, over the exponents of one energy."""
+    found = []
+    for model in ("power law", *_MODELS):
+        same = [row for row in fitted if row["model"] == model]
+        names = {"points", "chi_squared", "degrees_of_freedom", "gain"} & same[0].keys()
+        total = {name: sum(row[name] for row in same) for name in names}
+        best = {} if model == "power law" else best_transform(powers)
+        found.append({"epsilon": same[0]["epsilon"], "model": model} | total | best)
     return found
-
-
-def _row(model: str, chi: float, freedom: int, **known: float) -> dict[str, Any]:
-    return {"model": model, "chi_squared": chi, "degrees_of_freedom": freedom} | known
-
-
-def _variable(log_delta: FloatArray, power: float) -> FloatArray:
-    """x = delta^-power, or log(delta)."""
-    x: FloatArray = log_delta if power == 0 else np.exp(-power * log_delta)
-    return x
-
-
-def _without_power_law(data: FloatArray, log_delta: FloatArray, weights: FloatArray) -> FloatArray:
-    """The part of data (..., points) that is orthogonal to the power laws."""
-    plane, _ = np.linalg.qr(np.column_stack([weights, weights * log_delta]))
-    rest: FloatArray = data - (data @ plane) @ plane.T
-    return rest
-
-
-def _basis(log_delta: FloatArray, weights: FloatArray, power: float) -> Basis:
-    x = _variable(log_delta, power)
-    most = len(x) / 3
-    cycles = 1.5 + 0.15 * np.arange(1 + max(0, int(np.ceil((most - 1.5) / 0.15 - 1e-9))))
-    omegas = 2 * np.pi * cycles / np.ptp(x)
-    phases = np.outer(omegas, x)
-    terms = np.broadcast_arrays(1.0, log_delta, np.cos(phases), np.sin(phases))
-    orthonormal, _ = np.linalg.qr(weights[:, np.newaxis] * np.stack(terms, axis=-1))
-    return Basis(power, orthonormal[:, :, 2:], omegas)

@@ -1,11 +1,11 @@
 """The programs that some figures run in place of a question to the server (tools/README.md)."""
 
-from __future__ import annotations
-
+import csv
 import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -44,12 +44,23 @@ def output_of(program: str, *arguments: str, quiet: bool = False) -> str:
     return ended.stdout
 
 
-def table_of(program: str, command: str, **flags: Any) -> Table:
-    """The table that a command of the program prints as CSV; all its columns are numbers."""
-    texts = [text for name, value in flags.items() for text in (f"--{name}", str(value))]
-    lines = output_of(program, command, *texts).splitlines()
-    columns: Any = np.genfromtxt(lines, delimiter=",", names=True, ndmin=1)
-    return {name: columns[name] for name in columns.dtype.names or ()}
+def table_of(program: str, *words: str, **flags: Any) -> Table:
+    """The table that the program prints, given a command and flags."""
+    texts = [f"--{name.replace('_', '-')}={value}" for name, value in flags.items()]
+    return read_table(output_of(program, *words, *texts))
+
+
+def read_table(text: str) -> Table:
+    """Of CSV with a line of names: columns of numbers, NaN where absent, or of texts."""
+    names, *lines = csv.reader(text.splitlines())
+    return {name: _column(cells) for name, cells in zip(names, zip(*lines))}
+
+
+def _column(cells: Iterable[str]) -> Any:
+    try:
+        return np.array([float(cell or "nan") for cell in cells])
+    except ValueError:
+        return np.array(cells)
 
 
 def _folders() -> list[str]:

@@ -1,7 +1,5 @@
 """The style of all pictures, and what most of them draw."""
 
-from __future__ import annotations
-
 import functools
 import io
 import string
@@ -133,45 +131,32 @@ def point_handle(label: str, color: str, marker: str = "o", **style: Any) -> Lin
     return Line2D([], [], linestyle="", marker=marker, color=color, label=label, **style)
 
 
-def point_handles(several: Iterable[Series]) -> list[Line2D]:
-    """An entry of a legend for each series."""
-    return [point_handle(each.label, each.colour) for each in several]
-
-
-def line_handle(label: str, color: str, **style: Any) -> Line2D:
-    """An entry of a legend: a line."""
-    return Line2D([], [], color=color, label=label, **style)
-
-
 def inside(axes: Axes, x: float, y: float, text: str, **style: Any) -> None:
     """A text in a panel; x and y are shares of its width and height."""
     axes.text(x, y, text, transform=axes.transAxes, **style)
 
 
-def top_legend(figure: Figure, handles: Sequence[Any], columns: int = 0) -> None:
+def top_legend(figure: Figure, handles: Sequence[Any], columns: int = 0, **more: Any) -> None:
     """One legend for all panels, in a strip of its own above them."""
     columns = columns or len(handles)
     lines = -(-len(handles) // columns)
     height = (14 + 22 * lines) / _PIXELS / figure.get_figheight()
-    figure.legend(handles=handles, loc="upper center", ncol=columns, frameon=False)
+    figure.legend(handles=handles, loc="upper center", ncol=columns, frameon=False, **more)
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - height))
 
 
-def outer_labels(panels: Any, x: str, y: str) -> None:
-    """Labels of the axes at the lower and left panels only. `panels` is a matrix of axes."""
-    for axes in panels[-1, :]:
-        axes.set_xlabel(x)
-    for axes in panels[:, 0]:
-        axes.set_ylabel(y)
-
-
 def remove_empty(panels: Any, count: int) -> None:
-    """Removes all panels but the first `count`; the panels above them get labels at their axes."""
+    """Removes all panels but the first `count`; the panels above them get numbers at their axes."""
     for axes in panels.flat[count:]:
         axes.remove()
     for axes in panels[-2:-1].flat[count - panels.size :] if count < panels.size else ():
         axes.tick_params(labelbottom=True)
-        axes.set_xlabel(panels[-1, 0].get_xlabel())
+
+
+def widen(axes: Axes, low: float, high: float) -> None:
+    """Lets the vertical axis include this range beside all points."""
+    bottom, top = axes.get_ylim()
+    axes.set_ylim(min(low, bottom), max(high, top))
 
 
 def signed_log_axis(axes: Axes, noise: float) -> None:

@@ -1,7 +1,5 @@
 """Tables: named columns of equal length. A figure's data are tables by name of file."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -28,8 +26,8 @@ def table(rows: Iterable[Mapping[str, Any]], names: Iterable[str] = ()) -> Table
 
 def stacked(parts: Iterable[Mapping[str, Any]]) -> Table:
     """One table below the other. A single value in place of a column is repeated in all rows of its
-    part."""
-    tables = [dict(zip(part, np.broadcast_arrays(*part.values()))) for part in parts]
+    part. A part without columns has no rows."""
+    tables = [dict(zip(part, np.broadcast_arrays(*part.values()))) for part in parts if part]
     return {n: np.concatenate([t[n] for t in tables]) for n in (tables[0] if tables else ())}
 
 

@@ -1,39 +1,22 @@
 """The second Lyapunov exponent at rare ball-piston collisions, from statistics of one collision.
 
-core/billiard/tangent_map.h and tangent_plane.h define the tangent vectors: (a, A) of the ball and
-(b, B) of both bodies. In a wait of the time t the ball's part grows exponentially, to the direction
-(1, v k), where v is the ball's speed and k the curvature of its unstable front. The other part is
-sheared by
+docs/research/chaos.md derives it. A ball-piston collision after a wait t maps the part (b, B) of a
+tangent vector that does not grow in the ball's direction, up to its sign, by M S(t), with
 
-  S(t) = (1 t; 0 1).
-
-At a collision both parts are mixed by (c s; s -c), with c^2 + s^2 = 1 and c = p p'/(v v'). Here p
-is the piston's velocity and v the ball's speed, and a prime means after the collision. In the next
-wait the ball's part grows, unless it has the stable direction (1, -v' k').
-
-In the plane of the two growing vectors one vector has the direction that grows in a wait. Subtract
-the multiple of it that leaves the other vector in the stable direction of the next wait. This has
-mapped the other vector's part (b, B), up to its sign, by
-
+  S(t) = (1 t; 0 1),
   M = c (1 - P) + P/c,     P the projection on (1, v k) along (1, -v' k').
 
-So lambda_2 in a collision is the Lyapunov exponent of a product of the matrices M S(t), whose
-determinant is 1. If waits are long, each S turns the vector to (1, 0), and in the next order to
-(1, 1/t). The growth in a collision is then
+Here c = p p'/(v v'), p is the piston's velocity, v the ball's speed, k the curvature of the ball's
+unstable front, and a prime means after the collision. The growth in a collision is
 
   G = ln |[S(t') M S(t)]_12 / t| = ln t' + ln |M_21| + terms that vanish for t, t' -> infinity,
   |M_21| = vy^2 / |p p'| * k k' / (v k + v' k').
-
-Where vy = 0, M_21 vanishes. There the terms in 1/t and 1/t' count: if vy^2 is below about 1/t,
-which has a probability of order 1/sqrt(t).
 
 The distributions are those of the limit of rare collisions: velocities on the unit sphere have a
 density proportional to (vx - p)+, and the wait after a collision is exponential, with a rate that
 depends on the piston's speed. Positions are uniform on the collision surface at the actual delta.
 The curvatures follow from the ball's flights in its cell with a closed tip.
 """
-
-from __future__ import annotations
 
 from typing import NamedTuple
 
