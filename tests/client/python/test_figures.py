@@ -382,9 +382,10 @@ def test_a_figure_without_a_folder_is_an_error(capsys: pytest.CaptureFixture[str
     assert "--out is missing: name a folder" in capsys.readouterr().err
 
 
-def test_every_figure_can_be_edited(tmp_path: Path) -> None:
+def test_every_figure_can_be_edited(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in figures.names():
         assert command.main([name, "--edit", "--out", str(tmp_path)]) == 0
+        assert f"{name.replace('-', '_')}.py" in capsys.readouterr().out
         with pytest.raises(SystemExit):  # the help of the edited module
             command.main([name, "--out", str(tmp_path), "--help"])
 
