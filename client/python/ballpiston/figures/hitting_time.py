@@ -39,8 +39,8 @@ def measure(
     seed: int = 0,
 ) -> Tables:
     """The curves `survival`: the probability that ball and piston have not collided up to a time.
-    Their limit is the exponential law with the same mean free time, where the law has a limit (not
-    at the energies 0 and 1/2), and `t` is the time in units of this mean. `samples` are the first
+    At energies other than 0 and 1/2 their limit is the exponential law with the same mean free
+    time. `t` is the time in units of the conditional mean free time. `samples` are the first
     hits of each line."""
     result = first_hits(client, rho, delta, epsilon, exponent, samples, seed)
     survival = rows(curves(result), name="survival")
@@ -49,10 +49,11 @@ def measure(
     unit_of = {(d, e): unit for d, e, unit in zip(*units.values())}
     pairs = zip(survival["delta"], survival["epsilon"])
     survival["t"] = survival["time"] / np.array([unit_of[pair] for pair in pairs])
-    # If too few orbits have survived to measure the error, it is that of the larger probability, the
-    # measured one or that of the exponential law. It is not known if both are 0 or absent.
-    p = np.fmax(survival["value"], survival["limit"])
-    binomial = np.where(p > 0, np.sqrt(p * (1 - p) / survival["samples"]), np.nan)
+    # Where the server states no error, the error is binomial, with the larger of the measured and
+    # the exponential probability, and half a count more, as in the server's errors.
+    count = survival["samples"]
+    p = (count * np.fmax(survival["value"], survival["limit"]) + 0.5) / (count + 1)
+    binomial = np.sqrt(p * (1 - p) / count)
     error = survival["standard_error"]
     survival["error"] = np.where(np.isfinite(error), error, binomial)
     return {"hitting-time": survival}

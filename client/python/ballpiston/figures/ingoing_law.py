@@ -46,7 +46,7 @@ def measure(
 
 def merge(bins: Table, merged: int) -> Table:
     """Histograms with `merged` neighbouring bins in one. Densities are means over a bin; `error` is
-    the standard error; that of an empty bin is from the exact law."""
+    the standard error; that of an empty bin is the error of the count expected from h^(1)."""
     keys = ("delta", "epsilon", "exponent", "sigma")
     found = distinct(zip(*(bins[name] for name in keys)))
     return stacked(_merged(rows(bins, **dict(zip(keys, key))), keys, merged) for key in found)

@@ -12,7 +12,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ballpiston.client import Client
-from ballpiston.collisions import Records
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO
 from ballpiston.figures.parts.tables import Table, Tables, rows, stacked
@@ -51,11 +50,14 @@ def measure(
         for energy, rate, kernel in zip(energies, forms["f"][0], forms["kernel"][0])
     ]
     pair = {"rho": rho, "delta": delta, "model": "billiard", "seed": seed}
-    hits = client.sample("equilibrium", collisions=collisions, **pair).all()
+    names = ("piston_energy", "piston_energy_after")
+    sample = client.sample("equilibrium", collisions=collisions, **pair)
+    parts = [[part[name].copy() for name in names] for part in sample]
+    hits = dict(zip(names, map(np.concatenate, zip(*parts))))
     return {"kernel-exact": stacked(exact), "kernel-measured": densities(energies, hits, bins)}
 
 
-def densities(energies: Iterable[float], collisions: Records, bins: int) -> Table:
+def densities(energies: Iterable[float], collisions: Table, bins: int) -> Table:
     """Of the energy after the collisions whose energy before is near each of the energies.
 
     The bins have equal widths in u = sqrt(2 epsilon) after the collision, because the density of u
@@ -65,7 +67,7 @@ def densities(energies: Iterable[float], collisions: Records, bins: int) -> Tabl
     return stacked(part for energy in energies if (part := _densities_at(energy, collisions, bins)))
 
 
-def _densities_at(energy: float, collisions: Records, bins: int) -> dict[str, Any]:
+def _densities_at(energy: float, collisions: Table, bins: int) -> dict[str, Any]:
     is_near = np.abs(collisions["piston_energy"] - energy) < _WINDOW
     chosen = collisions["piston_energy_after"][is_near]
     end = 1 - 2 * (energy + _MARGIN * _WINDOW)

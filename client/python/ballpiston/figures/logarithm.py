@@ -40,6 +40,7 @@ _INTEGRAL_TIME = 0.541387668432  # of the limit, in mean free times (docs/resear
 _AT_REST = 1.25  # e^2/<e^2> of a piston at rest, with e = ep - 1/6
 _ASIDE = 0.03  # shift of points, so that all are visible
 _SHOWN = (-4, 6)  # of panel b, at least
+_LARGEST_SEED = 10**15  # of slow_pistons
 _FEWER_BELOW = 0.05  # orbits cost 1/delta^2; below this delta there are fewer of them
 
 
@@ -57,6 +58,8 @@ def measure(
     forms = client.analytic(rho, delta)
     found = []
     widths, times = forms["lambda"].tolist(), forms["tau_ball_piston"].tolist()
+    if seed + len(widths) - 1 > _LARGEST_SEED:
+        raise ValueError(f"seed is {seed}; permitted: at most {_LARGEST_SEED - len(widths) + 1}")
     for k, (d, width, tau) in enumerate(zip(number_list("delta", delta), widths, times)):
         count = max(2, int(samples * min(1.0, (d / _FEWER_BELOW) ** 2)))
         pair = {"rho": rho, "delta": d, "seed": seed + k}  # with one seed the starts are the same

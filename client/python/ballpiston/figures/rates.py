@@ -120,7 +120,7 @@ def rate_of_windows(
     probability P(t), the sum of min(gap, t) over the gaps between events, divided by the sum of the
     gaps. The standard error is that of a ratio of sums over batches; it is NaN for fewer than
     _FEWEST_GAPS gaps. All t use the same gaps: their errors are not independent. Without a gap the
-    value is NaN, too."""
+    rate is NaN, too."""
     hits = np.array([[np.minimum(gaps, t).sum() for t in lengths] for gaps in batches])
     times = np.array([gaps.sum() for gaps in batches])
     total = times.sum() or np.nan

@@ -154,7 +154,7 @@ def remove_empty(panels: Any, count: int) -> None:
 
 
 def widen(axes: Axes, low: float, high: float) -> None:
-    """Lets the vertical axis include this range beside all points."""
+    """Widens the vertical axis so that it includes this range and all points."""
     bottom, top = axes.get_ylim()
     axes.set_ylim(min(low, bottom), max(high, top))
 
