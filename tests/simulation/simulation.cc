@@ -26,7 +26,7 @@ constexpr size_t kStoryLines = 60;
 // trees keep a page more. One job of the largest kind takes as many.
 constexpr int64_t kBytesThatStay = 48 << 10;
 
-// What remains when the server dies.
+// These objects survive when the simulated server dies.
 struct Left {
   DiskFiles disk;
   std::string computing;  // the record of crashes

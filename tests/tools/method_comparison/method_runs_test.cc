@@ -1,4 +1,4 @@
-// What the methods compute: returns, relaxation times and currents, trajectories.
+// Tests the returns, the relaxation times, the currents and the trajectories of the methods.
 #include "core/closed_form/mean_free_time.h"
 #include "tests/core/preamble.h"
 #include "tools/method_comparison/point_runs.h"
