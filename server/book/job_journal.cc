@@ -220,6 +220,6 @@ void JobJournal::Ended(const absl::Status& outcome) {
   Failpoint("job.end_recorded");
 }
 
-void JobJournal::AwaitRoom() { store_.AwaitRoom(); }
+double JobJournal::AwaitRoom() { return store_.AwaitRoom(); }
 
 }  // namespace ballpiston::server

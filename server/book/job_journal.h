@@ -34,7 +34,7 @@ class JobJournal : public RunJournal {
   void PointFinished(size_t point, const PointExperiment& experiment,
                      const PointFold& fold) override;
   void Ended(const absl::Status& outcome) override;
-  void AwaitRoom() override;
+  double AwaitRoom() override;
 
  private:
   const std::shared_ptr<Job> job_;

@@ -68,8 +68,9 @@ class RunJournal {
   // OK: every point is finished. CANCELLED: the run was stopped. Otherwise the reason of failure.
   virtual void Ended(const absl::Status& outcome) = 0;
 
-  // Called after a turn with results. Returns when the journal has room for more reports.
-  virtual void AwaitRoom() = 0;
+  // Called after a turn with results. Returns when the journal has room for more reports, with the
+  // seconds that this took: 0 if there was room.
+  virtual double AwaitRoom() = 0;
 };
 
 }  // namespace ballpiston::server

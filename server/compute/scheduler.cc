@@ -1,7 +1,6 @@
 #include "server/compute/scheduler.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -11,7 +10,6 @@
 #include "server/compute/crash_record.h"
 #include "server/compute/guarded.h"
 #include "server/convert/errors.h"
-#include "server/host.h"
 
 namespace ballpiston::server {
 namespace {
@@ -217,11 +215,9 @@ void Scheduler::EndTurn(const Lease& lease, double seconds) {
   Conclude(run);
   const bool has_results = lease.OpensPoints() || lease.stop.stop_requested();
   if (!has_results) return;
-  const auto before = SteadyNow();
-  run->journal().AwaitRoom();
-  const std::chrono::duration<double> waited = SteadyNow() - before;
+  const double waited = run->journal().AwaitRoom();
   MutexLock lock(mutex_);
-  SharesOf(lease).Used(lease.run, waited.count());
+  SharesOf(lease).Used(lease.run, waited);
 }
 
 void Scheduler::Return(const Lease& lease, bool tried) {

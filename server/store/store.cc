@@ -184,9 +184,12 @@ bool Store::IsFull(size_t part) const {
          bytes_ > options_.max_pending_bytes / part;
 }
 
-void Store::AwaitRoom() {
+double Store::AwaitRoom() {
   MutexLock lock(mutex_);
+  if (!IsFull()) return 0;
+  const Clock::time_point begin = SteadyNow();
   while (!stop_waiting_ && !closing_ && IsFull()) written_.Wait(mutex_);
+  return std::chrono::duration<double>(SteadyNow() - begin).count();
 }
 
 void Store::AwaitRetry() {

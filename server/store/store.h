@@ -111,8 +111,9 @@ class Store {
     return Returned(read, [&](const Change& run) { return readers_.Read(run); });
   }
 
-  // Returns when few enough writes are pending, or the store is closing.
-  void AwaitRoom();
+  // Returns when few enough writes are pending, or the store is closing. Returns the seconds of the
+  // wait.
+  double AwaitRoom();
 
   // Waits for Options::retry, or until StopWaiting or Close. For a read that the disk failed.
   void AwaitRetry();

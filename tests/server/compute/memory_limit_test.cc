@@ -35,11 +35,11 @@ class MemoryLimitTest : public SchedulerTest {
     return journal;
   }
 
-  // The next turn that does not open a point.
+  // The next turn that does not open a point. To open one takes a second, so that runs take turns.
   std::optional<Lease> BeginChunks() {
     std::optional<Lease> lease = local_.Begin();
     while (lease && lease->OpensPoints()) {
-      local_.End(*lease, 0);
+      local_.End(*lease, 0, 1);
       lease = local_.Begin();
     }
     return lease;

@@ -60,7 +60,7 @@ class RecordingJournal : public RunJournal {
     changed.notify_all();
   }
 
-  void AwaitRoom() override { await_room(); }
+  double AwaitRoom() override { return await_room(); }
 
   absl::Status AwaitEnd() {  // if threads compute the run
     std::unique_lock lock(mutex);
@@ -70,7 +70,7 @@ class RecordingJournal : public RunJournal {
 
   std::map<size_t, FoldState> stored;  // set before the run: what an earlier process stored
   int unreadable = 0;                  // the first reads of points that fail
-  std::function<void()> await_room = [] {};
+  std::function<double()> await_room = [] { return 0; };
   std::mutex mutex;
   std::condition_variable changed;
   int ends = 0;

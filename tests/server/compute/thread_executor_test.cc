@@ -27,7 +27,10 @@ TEST(ThreadExecutor, ARunIsInTheRecordOnlyWhileItIsComputed) {
   ThreadExecutor threads(scheduler, 1, std::numeric_limits<double>::infinity(),
                          std::make_shared<CrashRecord>(folder.path(), before));
   const auto journal = std::make_shared<RecordingJournal>();
-  journal->await_room = [&] { keep(in_a_wait); };
+  journal->await_room = [&] {
+    keep(in_a_wait);
+    return 0;
+  };
   scheduler.Add(RunOf(1, FakeSpec(1, 3), journal));
   threads.Start();
   EXPECT_OK(journal->AwaitEnd());
