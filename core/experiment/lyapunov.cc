@@ -11,9 +11,12 @@
 //
 // The billiard's lanes follow two tangent vectors. The reference follows six, and reports the other
 // four exponents and the sum of all six as they were measured.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -161,6 +164,13 @@ Forecast ForecastOfLyapunov(Model model, const PointParameters& point) {
 // where they differ by a factor of 1.5.
 constexpr Scatter OfOrbits(double error) { return {error, kOrbitsPerCollision}; }
 
+// lambda_2 scatters more in small cells, as measured for rho = 0.7, 0.706, 0.707 and 0.7071.
+Scatter OfSecond(const PointParameters& point, double usual) {
+  constexpr double kLargest = 2.5, kAtASmallCell = 1.1, kSmallCell = 0.007;
+  const double room = std::numbers::sqrt2 / 2 - point[kRho];
+  return OfOrbits(std::clamp(kAtASmallCell + 0.4 * std::log(kSmallCell / room), usual, kLargest));
+}
+
 consteval AimedEstimate Aim(absl::string_view name,
                             Scatter (*scatter)(Model, const PointParameters&)) {
   return {.name = name, .models = kBilliards, .scatter = scatter};
@@ -168,10 +178,11 @@ consteval AimedEstimate Aim(absl::string_view name,
 
 constexpr AimedEstimate kAimsOfLyapunov[] = {
     Aim("lyapunov_1", [](Model, const PointParameters&) { return OfOrbits(0.36); }),
-    Aim("lyapunov_2", [](Model, const PointParameters&) { return OfOrbits(1.0); }),
+    Aim("lyapunov_2", [](Model, const PointParameters& point) { return OfSecond(point, 1.0); }),
     Aim("entropy", [](Model, const PointParameters&) { return OfOrbits(0.34); }),
     Aim("lyapunov_1_per_collision", [](Model, const PointParameters&) { return OfOrbits(1.2); }),
-    Aim("lyapunov_2_per_collision", [](Model, const PointParameters&) { return OfOrbits(0.7); })};
+    Aim("lyapunov_2_per_collision",
+        [](Model, const PointParameters& point) { return OfSecond(point, 0.7); })};
 
 }  // namespace
 

@@ -18,13 +18,13 @@ def write_atomically(path: Path, data: bytes) -> None:
 def whole_file(path: Path) -> Iterator[Path]:
     """A file beside `path` to write to. It becomes `path` at the end, and is removed after an
     error, so that no half-written result remains. A pipe or a device is written to directly."""
-    if path.exists() and not path.is_file():
-        yield path
-        return
     target = path.resolve()  # symbolic links stay
     umask = os.umask(0o077)
     os.umask(umask)
     try:
+        if path.exists() and not path.is_file():
+            yield path
+            return
         mode = target.stat().st_mode if target.exists() else 0o666 & ~umask
         descriptor, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
         os.close(descriptor)

@@ -216,11 +216,14 @@ def test_drawn_collisions_have_the_invariant_measure() -> None:
     assert abs(logarithms.mean() - tangent_growth.mean_log_velocities()) < 5 * error
 
 
-def test_a_ball_between_two_opposite_discs_has_the_curvature_of_its_periodic_orbit() -> None:
-    gap = np.sqrt(2) - 2 * RHO
-    at_disc = np.sqrt(1 / RHO**2 + 2 / (RHO * gap)) - 1 / RHO  # k = k/(1 - k gap) - 2/rho
+@pytest.mark.parametrize("rho", [RHO, 0.7])
+def test_a_ball_between_two_opposite_discs_has_the_curvature_of_its_periodic_orbit(
+    rho: float,
+) -> None:
+    gap = np.sqrt(2) - 2 * rho
+    at_disc = np.sqrt(1 / rho**2 + 2 / (rho * gap)) - 1 / rho  # k = k/(1 - k gap) - 2/rho
     centre, along = np.zeros(1), np.full(1, np.sqrt(0.5))
-    found = tangent_growth.stable_curvature(RHO, centre, centre, along, along)
+    found = tangent_growth.stable_curvature(rho, centre, centre, along, along)
     assert found == pytest.approx([at_disc / (1 - at_disc * gap / 2)], rel=1e-9)
 
 

@@ -31,8 +31,8 @@ std::vector<Case> CasesOfErrors() {
       }
     }
   }
-  for (const char* place :
-       {"rho=0.501 delta=0.4", "rho=0.53 delta=0.3", "rho=0.53 delta=0.02", "rho=0.7 delta=0.01"}) {
+  for (const char* place : {"rho=0.501 delta=0.4", "rho=0.53 delta=0.3", "rho=0.53 delta=0.02",
+                            "rho=0.7 delta=0.01", "rho=0.706 delta=0.0014"}) {
     for (const AimedEstimate& aim : kLyapunov.aims) {
       cases.push_back(
           {absl::StrCat("lyapunov collisions=5000 model=billiard ", place, " estimate=", aim.name),
