@@ -534,6 +534,12 @@ describe('Keyboard, colours and width', () => {
     await page.keyboard.press('n');
     await waitUntilChanged(() => clock.innerText(), paused);
     await page.locator('.events li').first().filter({hasText: 'ball piston'}).waitFor();
+    await page.getByLabel('δ').fill('0.01'); // the first exchange is event 19,098
+    await page.getByRole('textbox', {name: 'Events'}).fill('1e5');
+    await page.getByRole('button', {name: 'Trace'}).click();
+    await clock.filter({hasText: 't = 0.00'}).waitFor();
+    await page.getByRole('button', {name: 'Next exchange'}).click();
+    await page.locator('.events li').first().filter({hasText: 'ball piston'}).waitFor();
   });
 
   it('an orbit does not move by itself for readers who prefer reduced motion', async () => {
@@ -549,14 +555,19 @@ describe('Keyboard, colours and width', () => {
     await page.getByLabel('δ').fill('0.15');
     await page.getByRole('button', {name: 'Trace'}).click();
     await page.getByRole('img', {name: 'Gas of 6 balls and 12 pistons'}).waitFor();
-    await page.getByRole('spinbutton', {name: 'Events'}).fill('1e3');
+    await page.getByRole('textbox', {name: 'Events'}).fill('1e3');
     const request = page.waitForRequest(/TraceOrbit/);
     await page.getByRole('button', {name: 'Trace'}).click();
     assert.match((await request).postData(), /"events":1000\b/);
-    await page.getByLabel('Seed').fill('1e3');
-    assert.equal(await page.locator('form.fields').evaluate((form) => form.checkValidity()), false);
-    await page.getByLabel('Seed').fill('7');
-    await page.getByLabel('δ').fill('0.9');
+    for (const [field, wrong, right] of [
+      ['Seed', '1e3', '7'],
+      ['δ', '0,5', '0.9'],
+    ]) {
+      await page.getByLabel(field).fill(wrong);
+      const form = page.locator('form.fields');
+      assert.equal(await form.evaluate((fields) => fields.checkValidity()), false);
+      await page.getByLabel(field).fill(right);
+    }
     await page.getByRole('button', {name: 'Trace'}).click();
     await banner().filter({hasText: 'delta is 0.9'}).waitFor();
   });
