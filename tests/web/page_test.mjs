@@ -153,6 +153,14 @@ describe('The page', () => {
     await banner().waitFor({state: 'hidden'});
   });
 
+  it('returns to the view that was asked for without the token', async () => {
+    await page.goto(web.address.replace(/#.*/, `#${firstHit}/results/2`));
+    await banner().filter({hasText: 'Authorization: Bearer TOKEN is missing'}).waitFor();
+    await page.goto(web.address);
+    await page.getByRole('heading', {name: 'Point 2'}).waitFor();
+    await banner().waitFor({state: 'hidden'});
+  });
+
   it('rejects the page of another origin', async () => {
     const other = createServer((_, response) => response.end('<!doctype html>'));
     await new Promise((done) => other.listen(0, '127.0.0.1', done));
@@ -245,6 +253,43 @@ describe('Jobs', () => {
     await page.getByText('Numbers').first().click();
     const rows = await page.locator('.chart').first().locator('tbody tr').allInnerTexts();
     assert.equal(rows.length, 51); // 1000 bins in groups of 20, and the upper edge
+    const {width} = await page.locator('.u-over').first().boundingBox();
+    await page
+      .locator('.u-over')
+      .first()
+      .hover({position: {x: (20.8 / 50) * width, y: 9}});
+    const read = await page.locator('.readout').first().innerText();
+    assert.equal(read.split(' · ')[0], `α = ${rows[20].split('\t')[0]}`);
+  });
+
+  it('name different parameters, models without samples, and missing points', async () => {
+    const job = fakeJob(1, {progress: {points: 4, points_done: 4}});
+    const point = (index, delta, epsilon) => ({
+      index,
+      parameters: {delta, epsilon},
+      model: 'CLOSED_FORM',
+      estimates: [{name: 'mean_free_time', value: 2 + index, exact: 2}],
+    });
+    const finished = [point(0, 0.1, 0.5), point(1, 0.2, 0.5)];
+    const near = [point(2, 0.1, 0.499999999999), point(3, 0.2, 0.499999999999)];
+    await answerInstead(page, 'EnsembleService/GetEnsembleJob', job);
+    for (const [points, labels] of [
+      [finished, ['closed form', 'exact']],
+      [
+        [...finished, ...near],
+        ['ε = 0.5', 'ε = 0.5, exact', 'ε = 0.499999999999', 'ε = 0.499999999999, exact'],
+      ],
+    ]) {
+      await streamInstead(page, 'EnsembleService/WatchEnsembleJob', [
+        {resume_token: '1', snapshot: {finished_points: points}},
+        {job},
+      ]);
+      await open('jobs');
+      await open(`${job.name}/results/4`);
+      await page.getByRole('heading', {name: 'There is no point 4: the last one'}).waitFor();
+      const shown = page.locator('.legend li');
+      await assertSoon(async () => assert.deepEqual(await shown.allInnerTexts(), labels));
+    }
   });
 
   it('show growing histograms while they run', async () => {
@@ -257,6 +302,22 @@ describe('Jobs', () => {
       await chart.waitFor();
       const canvas = chart.locator('canvas:not(.key)');
       await waitUntilChanged(() => pixelsOf(canvas), await pixelsOf(canvas));
+      const histogram = page.locator('.chart', {hasText: /Energy of the piston, time/}).first();
+      const area = histogram.locator('.u-over');
+      const {width} = await area.boundingBox();
+      const shownAt = async (share) => {
+        await area.hover({position: {x: share * width, y: 30}});
+        return (await histogram.locator('.readout').innerText()).split(' · ')[0];
+      };
+      const middle = await shownAt(0.5);
+      await page.mouse.down();
+      await shownAt(0.9);
+      await page.mouse.up();
+      assert.equal(await shownAt(0.001), middle);
+      const zoomed = histogram.locator('canvas:not(.key)');
+      await waitUntilChanged(() => pixelsOf(zoomed), await pixelsOf(zoomed));
+      await shownAt(0.2);
+      assert.equal(await shownAt(0.001), middle);
     } finally {
       cancel(job);
     }
@@ -473,6 +534,12 @@ describe('Keyboard, colours and width', () => {
     await page.keyboard.press('n');
     await waitUntilChanged(() => clock.innerText(), paused);
     await page.locator('.events li').first().filter({hasText: 'ball piston'}).waitFor();
+    await page.getByLabel('δ').fill('0.01'); // the first exchange is event 19,098
+    await page.getByRole('textbox', {name: 'Events'}).fill('1e5');
+    await page.getByRole('button', {name: 'Trace'}).click();
+    await clock.filter({hasText: 't = 0.00'}).waitFor();
+    await page.getByRole('button', {name: 'Next exchange'}).click();
+    await page.locator('.events li').first().filter({hasText: 'ball piston'}).waitFor();
   });
 
   it('an orbit does not move by itself for readers who prefer reduced motion', async () => {
@@ -488,14 +555,19 @@ describe('Keyboard, colours and width', () => {
     await page.getByLabel('δ').fill('0.15');
     await page.getByRole('button', {name: 'Trace'}).click();
     await page.getByRole('img', {name: 'Gas of 6 balls and 12 pistons'}).waitFor();
-    await page.getByRole('spinbutton', {name: 'Events'}).fill('1e3');
+    await page.getByRole('textbox', {name: 'Events'}).fill('1e3');
     const request = page.waitForRequest(/TraceOrbit/);
     await page.getByRole('button', {name: 'Trace'}).click();
     assert.match((await request).postData(), /"events":1000\b/);
-    await page.getByLabel('Seed').fill('1e3');
-    assert.equal(await page.locator('form.fields').evaluate((form) => form.checkValidity()), false);
-    await page.getByLabel('Seed').fill('7');
-    await page.getByLabel('δ').fill('0.9');
+    for (const [field, wrong, right] of [
+      ['Seed', '1e3', '7'],
+      ['δ', '0,5', '0.9'],
+    ]) {
+      await page.getByLabel(field).fill(wrong);
+      const form = page.locator('form.fields');
+      assert.equal(await form.evaluate((fields) => fields.checkValidity()), false);
+      await page.getByLabel(field).fill(right);
+    }
     await page.getByRole('button', {name: 'Trace'}).click();
     await banner().filter({hasText: 'delta is 0.9'}).waitFor();
   });

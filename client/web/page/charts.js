@@ -21,6 +21,8 @@
   const COLOURS = 6; // --line-0 to --line-5 in style.css
   const SYMBOL_RADIUS = 3.5;
   const MOST_TABLE_ROWS = 200;
+  const MOST_DECADES = 6; // with a number on a log axis
+  const LEAST_WIDTH = 1e-16; // of a range of x; uPlot ignores smaller ones
   const ROOM = 0.06; // of the range of y, above and below
 
   const charts = new Set();
@@ -63,7 +65,7 @@
     c.fill();
   }
 
-  function drawBar(c, ...ends) {
+  function drawLine(c, ...ends) {
     c.beginPath();
     for (const end of ends) c.lineTo(...end);
     c.stroke();
@@ -72,7 +74,7 @@
   // A logarithmic axis has no place for an end at or below 0.
   function drawErrorBar(u, c, x, value, error) {
     const y = (end) => u.valToPos(Math.max(end, u.scales.y.min), 'y', true);
-    drawBar(c, [x, y(value - error)], [x, y(value + error)]);
+    drawLine(c, [x, y(value - error)], [x, y(value + error)]);
   }
 
   function drawMeasured(u, line) {
@@ -87,7 +89,7 @@
       const left = u.valToPos(x, 'x', true);
       if (line.error?.[i] > 0) drawErrorBar(u, c, left, line.y[i], line.error[i]);
       const y = u.valToPos(line.y[i], 'y', true);
-      if (line.marks) drawBar(c, [left - 3 * radius, y], [left + 3 * radius, y]);
+      if (line.marks) drawLine(c, [left - 3 * radius, y], [left + 3 * radius, y]);
       else drawSymbol(c, line, left, y, radius);
     }
   }
@@ -130,7 +132,11 @@
     return [fromZero && min === 0 ? 0 : min - room, max + room];
   }
 
-  function rangeOfX(chart, min, max) {
+  // A range that the reader selected does not reach one end of the data.
+  const isSelected = (x, min, max) => min > x[0] || max < x.at(-1);
+
+  function rangeOfX(chart, x, min, max) {
+    if (isSelected(x, min, max)) return [min, max];
     if (min === null || max === null) return chart.logX ? [1, 10] : [0, 1];
     if (chart.logX) return min === max ? [min / 2, max * 2] : [min / 1.1, max * 1.1];
     if (chart.lines.some((line) => line.kind === 'steps')) return [min, max];
@@ -176,14 +182,20 @@
     return String(tick);
   }
 
-  // Ticks of a log axis: 1, 2 and 5 of each decade, or only 1 if there are many decades.
-  function logTicks(u, axis, min, max) {
-    const digits = max / min > 1e3 ? [1] : [1, 2, 5];
+  // Ticks of a log axis: 1, 2 and 5 of each decade; only 1, of some decades, if there are many; else
+  // multiples of `step`, if less than two of those ticks are in the range.
+  function logTicks(u, axis, min, max, step) {
+    const [first, last] = [Math.log10(min), Math.log10(max)];
+    const digits = last - first > 3 ? [1] : [1, 2, 5];
+    const stride = Math.ceil((last - first) / MOST_DECADES);
     const ticks = [];
-    for (let decade = 10 ** Math.floor(Math.log10(min)); decade <= max; decade *= 10) {
-      ticks.push(...digits.map((digit) => digit * decade));
+    for (let e = stride * Math.floor(first / stride); e <= last; e += stride) {
+      ticks.push(...digits.map((digit) => digit * 10 ** e));
     }
-    return ticks.filter((tick) => tick >= min && tick <= max);
+    const shown = ticks.filter((tick) => tick >= min && tick <= max);
+    if (shown.length > 1) return shown;
+    const count = Math.floor(max / step) - Math.ceil(min / step) + 1;
+    return Array.from({length: count}, (_, i) => (Math.ceil(min / step) + i) * step);
   }
 
   const LOG = {splits: logTicks, filter: (u, ticks) => ticks}; // of an axis
@@ -199,14 +211,10 @@
   }
 
   // A chart of the same shape keeps its uPlot object and the zoom. Otherwise a new object is made.
-  const shapeOf = (chart) =>
-    JSON.stringify([
-      chart.xLabel,
-      chart.yLabel,
-      chart.logX,
-      chart.logY,
-      chart.lines.map((line) => [line.label, line.kind, line.colour]),
-    ]);
+  function shapeOf({xLabel, yLabel, logX, logY, lines}) {
+    const kinds = lines.map(({label, kind, colour}) => [label, kind, colour]);
+    return JSON.stringify([xLabel, yLabel, logX, logY, kinds]);
+  }
 
   function symbolKey(line) {
     const canvas = element('canvas', {class: 'key', 'aria-hidden': 'true', width: 56, height: 28});
@@ -222,12 +230,14 @@
       drawSymbol(c, line, 28, 14, 7);
     } else {
       if (line.kind === 'limit') c.setLineDash([10, 8]);
-      c.beginPath();
-      c.moveTo(2, 14);
-      c.lineTo(54, 14);
-      c.stroke();
+      drawLine(c, [2, 14], [54, 14]);
     }
     return canvas;
+  }
+
+  function noteOf(chart, x) {
+    const isTooNarrow = x.at(-1) > x[0] && x.at(-1) - x[0] < LEAST_WIDTH;
+    return isTooNarrow ? `The range of ${chart.xLabel} is too small for a picture.` : chart.note;
   }
 
   function tableOf(chart) {
@@ -260,16 +270,8 @@
         element('summary', {}, 'Numbers'),
         this.numbers,
       );
-      this.element = element(
-        'figure',
-        {class: 'chart'},
-        this.title,
-        this.legend,
-        this.plot,
-        this.readout,
-        this.note,
-        this.details,
-      );
+      const parts = [this.title, this.legend, this.plot, this.readout, this.note, this.details];
+      this.element = element('figure', {class: 'chart'}, parts);
       this.uplot = null;
       charts.add(this);
       this.resizing = new ResizeObserver(() => this.resize());
@@ -281,13 +283,22 @@
       this.chart = chart;
       this.title.textContent = chart.title;
       this.numbers.setAttribute('aria-label', `Numbers: ${chart.title}`);
-      this.note.textContent = chart.note ?? '';
-      this.note.hidden = !chart.note;
+      const data = aligned(chart.lines);
+      this.note.textContent = noteOf(chart, data[0]) ?? '';
+      this.note.hidden = this.note.textContent === '';
       this.plot.setAttribute('aria-label', this.description());
       if (this.shape !== shapeOf(chart)) this.clear();
-      if (this.uplot) this.uplot.setData(aligned(chart.lines));
+      if (this.uplot) this.replace(data);
       else this.resize();
       this.showNumbers();
+    }
+
+    // Keeps the zoom.
+    replace(data) {
+      const {min, max} = this.uplot.scales.x;
+      const isZoomed = isSelected(this.uplot.data[0], min, max);
+      this.uplot.setData(data, !isZoomed);
+      if (isZoomed) this.uplot.redraw();
     }
 
     description() {
@@ -333,7 +344,7 @@
             x: {
               time: false,
               distr: chart.logX ? 3 : 1,
-              range: (u, min, max) => (this.xRange = rangeOfX(this.chart, min, max)),
+              range: (u, min, max) => (this.xRange = rangeOfX(this.chart, u.data[0], min, max)),
             },
             y: {distr: chart.logY ? 3 : 1, range: () => rangeOfY(this.chart, this.xRange)},
           },
@@ -361,7 +372,9 @@
     }
 
     read(u) {
-      const i = u.cursor.idx;
+      let i = u.cursor.idx; // of the nearest x; but a step holds from its x to the next
+      const isStep = this.chart.lines.some((line) => line.stepped || line.kind === 'steps');
+      if (isStep && u.data[0][i] > u.posToVal(u.cursor.left, 'x')) i = Math.max(i - 1, 0);
       this.readout.textContent = isNumber(i) ? this.valuesAt(u.data, i) : '';
     }
 
@@ -390,15 +403,16 @@
   // The kinds of lines that measured values are compared with, and their labels.
   const COMPARED = {exact: 'exact', limit: 'Markov limit'};
 
-  // The lines of one series, from its places {x, value, error, exact, limit} in the order of x. A
-  // series without a label is the only one of its chart.
+  // The lines of one series, from its places {x, value, error, exact, limit, source} in the order of
+  // x. A series without a label is the only one of its chart: its label is the places' sources.
   function seriesLines(places, label = '', colour = 0) {
     const line = (field, more) => ({
       x: places.map((at) => at.x),
       y: places.map((at) => at[field] ?? null),
       ...more,
     });
-    const measured = {label: label || 'measured', kind: 'measured', colour};
+    const sources = new Set(places.map((at) => at.source));
+    const measured = {label: label || [...sources].join(', '), kind: 'measured', colour};
     const compared = Object.keys(COMPARED)
       .filter((kind) => places.some((at) => isNumber(at[kind])))
       .map((kind) =>
@@ -411,15 +425,29 @@
     return [line('value', {...measured, error: places.map((at) => at.error)}), ...compared];
   }
 
-  // Called after a change of the theme.
+  // Called after a change of the theme. Sends 'repaint' to the window.
   function repaintCharts() {
     colours.clear();
     charts.forEach((chart) => chart.repaint());
+    dispatchEvent(new Event('repaint'));
   }
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaintCharts);
+
+  function setTheme(theme) {
+    document.documentElement.dataset.theme = theme;
+    repaintCharts();
+  }
+
+  // Paper has the light theme.
+  let screenTheme;
+  addEventListener('beforeprint', () => {
+    screenTheme = document.documentElement.dataset.theme ?? 'auto';
+    setTheme('light');
+  });
+  addEventListener('afterprint', () => setTheme(screenTheme));
 
   // Called when the reader leaves a view.
   const removeCharts = () => charts.forEach((chart) => chart.remove());
 
-  Object.assign(ballpiston, {Chart, seriesLines, styleOf, repaintCharts, removeCharts});
+  Object.assign(ballpiston, {Chart, seriesLines, styleOf, drawLine, setTheme, removeCharts});
 })((globalThis.ballpiston ??= {}));

@@ -40,6 +40,7 @@
   }
 
   async function post(method, type, body, signal) {
+    const token = ballpiston.token();
     let response;
     try {
       response = await fetch(PACKAGE + method, {
@@ -47,7 +48,7 @@
         body,
         signal,
         cache: 'no-store',
-        headers: {'Content-Type': type, Authorization: `Bearer ${ballpiston.token()}`},
+        headers: {'Content-Type': type, ...(token && {Authorization: `Bearer ${token}`})},
       });
     } catch (error) {
       if (signal?.aborted) throw error;

@@ -6,6 +6,7 @@
   const TOKEN = 'ballpiston-token';
   const FIRST_DELAY = 500; // ms; doubles with each failure
   const LONGEST_DELAY = 8000;
+  const HIDDEN = 5000; // ms, after which a stream of a hidden tab ends
 
   // `name`: localStorage or sessionStorage. Reading it throws if the browser blocks it; then values
   // last until the page is reloaded.
@@ -22,13 +23,12 @@
   const token = () => session.getItem(TOKEN) ?? '';
 
   // Moves the token from the address #token=... into this tab's storage: then bookmarks do not
-  // contain it, and a reload keeps it. Returns true if the address had a token.
-  function takeToken() {
+  // contain it, and a reload keeps it. Then shows `previous`, the fragment before.
+  function takeToken(previous) {
     const match = /^#token=([\w-]+)$/.exec(location.hash);
-    if (!match) return false;
+    if (!match) return;
     session.setItem(TOKEN, match[1]);
-    history.replaceState(null, '', '#jobs');
-    return true;
+    history.replaceState(null, '', previous || '#jobs');
   }
 
   const banner = () => document.getElementById('connection');
@@ -111,7 +111,7 @@
         return result;
       } catch (error) {
         signal.throwIfAborted();
-        if (error instanceof ballpiston.TabHidden) continue;
+        if (error instanceof TabHidden) continue;
         if (error.isFinal || !(error instanceof ballpiston.CallError)) {
           failed(error);
           throw error;
@@ -123,34 +123,28 @@
     }
   }
 
-  // Thrown by an attempt that ended because its tab was hidden.
+  // Thrown by a stream that ended because its tab was hidden.
   class TabHidden extends Error {}
 
-  // A signal that is aborted with `signal`, or when the tab is hidden for `ms`.
-  function whileVisible(signal, ms = 5000) {
+  // The messages of a stream. Ends the stream when the tab is hidden for HIDDEN.
+  async function* streamWhileVisible(method, request, signal) {
     const controller = new AbortController();
     let timer;
     const look = () => {
       clearTimeout(timer);
-      if (document.hidden) timer = setTimeout(() => controller.abort(new TabHidden()), ms);
+      if (document.hidden) timer = setTimeout(() => controller.abort(new TabHidden()), HIDDEN);
     };
-    const ended = {signal: controller.signal};
-    document.addEventListener('visibilitychange', look, ended);
-    signal.addEventListener('abort', () => controller.abort(signal.reason), ended);
-    controller.signal.addEventListener('abort', () => clearTimeout(timer));
+    document.addEventListener('visibilitychange', look, {signal: controller.signal});
     look();
-    return controller;
+    try {
+      const either = AbortSignal.any([signal, controller.signal]);
+      yield* ballpiston.stream(method, request, either);
+    } finally {
+      clearTimeout(timer);
+      controller.abort(); // removes the listener
+    }
   }
 
-  Object.assign(ballpiston, {
-    storage,
-    token,
-    takeToken,
-    clearBanner,
-    until,
-    pause,
-    keepTrying,
-    TabHidden,
-    whileVisible,
-  });
+  Object.assign(ballpiston, {storage, token, takeToken, say, clearBanner});
+  Object.assign(ballpiston, {until, pause, keepTrying, streamWhileVisible});
 })((globalThis.ballpiston ??= {}));

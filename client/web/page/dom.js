@@ -101,14 +101,6 @@
     return element('label', {class: 'choice'}, element('span', {}, label), select);
   }
 
-  Object.assign(ballpiston, {
-    element,
-    button,
-    textColumns,
-    numberColumns,
-    table,
-    LiveRows,
-    facts,
-    choice,
-  });
+  Object.assign(ballpiston, {element, button, facts, choice});
+  Object.assign(ballpiston, {textColumns, numberColumns, table, LiveRows});
 })((globalThis.ballpiston ??= {}));

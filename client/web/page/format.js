@@ -15,6 +15,7 @@
   const ERROR_DIGITS = 2;
   const DIGITS = 6; // without an error
   const EXACT_DIGITS = 12;
+  const MOST_PLAIN = 1e12; // larger numbers have the exponential form
   const ROUNDING = 5e-13; // an error below this share of the value is that of rounding
 
   const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
@@ -32,11 +33,16 @@
     return isNumber(error) && error >= 0 && error < ROUNDING * Math.abs(value);
   }
 
+  function shortText(value, digits) {
+    const rounded = Number(value.toPrecision(digits));
+    return Math.abs(rounded) < MOST_PLAIN ? String(rounded) : rounded.toExponential();
+  }
+
   // As many digits as the error permits.
   function valueText(value, error) {
     if (!isNumber(value)) return '';
-    if (isExact(value, error)) return String(Number(value.toPrecision(EXACT_DIGITS)));
-    if (!(error > 0)) return String(Number(value.toPrecision(DIGITS)));
+    if (isExact(value, error)) return shortText(value, EXACT_DIGITS);
+    if (!(error > 0)) return shortText(value, DIGITS);
     const places = decimals(error);
     if (isPlain(value, places)) return value.toFixed(places);
     const digits = value === 0 ? 0 : Math.floor(Math.log10(Math.abs(value))) + places;
@@ -95,7 +101,7 @@
   }
 
   // Made once: a new formatter for each time would take longer than the rest of a long list.
-  const TIME_FORMAT = new Intl.DateTimeFormat('en-GB', {dateStyle: 'medium', timeStyle: 'medium'});
+  const TIME_FORMAT = new Intl.DateTimeFormat('en-GB', {dateStyle: 'medium', timeStyle: 'long'});
 
   const wholeTime = (time) => (time ? TIME_FORMAT.format(new Date(time)) : '');
 
@@ -114,37 +120,23 @@
       .map((name) => [name, parameters[name]]);
   }
 
-  const parameterText = (value) =>
-    isNumber(value) ? String(Number(value.toPrecision(10))) : String(value);
+  // With all digits, so that different values have different texts.
+  const pairsText = (pairs) =>
+    pairs.map(([name, value]) => `${symbolOf(name)} = ${value}`).join(', ');
+  const parametersText = (parameters) => pairsText(parameterPairs(parameters));
 
-  function parametersText(parameters) {
-    return parameterPairs(parameters)
-      .map(([name, value]) => `${symbolOf(name)} = ${parameterText(value)}`)
-      .join(', ');
-  }
+  const estimateOf = (point, name) => point.estimates.find((estimate) => estimate.name === name);
+
+  // What gives the point's values.
+  const sourceOf = (point) => (point.samples > 0 ? 'measured' : words(point.model));
 
   // The text as one word of a POSIX shell.
   function shellWord(text) {
     return /^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
   }
 
-  Object.assign(ballpiston, {
-    isNumber,
-    valueText,
-    errorText,
-    withError,
-    signedText,
-    countText,
-    bytesText,
-    durationText,
-    ageText,
-    timeElement,
-    wholeTime,
-    words,
-    symbolOf,
-    parameterPairs,
-    parameterText,
-    parametersText,
-    shellWord,
-  });
+  Object.assign(ballpiston, {isNumber, valueText, errorText, withError, signedText, countText});
+  Object.assign(ballpiston, {bytesText, durationText, ageText, timeElement, wholeTime});
+  Object.assign(ballpiston, {words, symbolOf, parameterPairs, pairsText, parametersText});
+  Object.assign(ballpiston, {estimateOf, sourceOf, shellWord});
 })((globalThis.ballpiston ??= {}));

@@ -45,10 +45,8 @@
     const varying = varyingParameters(points);
     const grouped = new Map();
     for (const point of points) {
-      const label = parameterPairs(point.parameters)
-        .filter(([name]) => name !== axis && varying[name])
-        .map(([name, value]) => `${symbolOf(name)} = ${ballpiston.parameterText(value)}`)
-        .join(', ');
+      const pairs = parameterPairs(point.parameters);
+      const label = ballpiston.pairsText(pairs.filter(([name]) => name !== axis && varying[name]));
       if (!grouped.has(label)) grouped.set(label, []);
       grouped.get(label).push(point);
     }
@@ -82,10 +80,8 @@
     return points
       .map((point) => ({
         x: Number(point.parameters[axis]),
-        ...inForm(
-          point.estimates.find((estimate) => estimate.name === name),
-          shown,
-        ),
+        source: ballpiston.sourceOf(point),
+        ...inForm(ballpiston.estimateOf(point, name), shown),
       }))
       .filter((at) => at.value !== null)
       .sort((a, b) => a.x - b.x);

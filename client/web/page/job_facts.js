@@ -2,28 +2,17 @@
 (function (ballpiston) {
   'use strict';
 
-  const {
-    element,
-    facts,
-    countText,
-    bytesText,
-    durationText,
-    wholeTime,
-    words,
-    symbolOf,
-    parameterText,
-  } = ballpiston;
+  const {element, facts, words, symbolOf} = ballpiston;
+  const {countText, bytesText, durationText, wholeTime} = ballpiston;
 
   const MOST_VALUES = 12; // more values of a parameter are shortened in the table
 
   const idOf = (job) => String(job.name).split('/').slice(1).join('/');
 
   function gridText(values) {
-    if (values.length <= MOST_VALUES) return values.map(parameterText).join(', ');
-    return (
-      `${values.slice(0, 3).map(parameterText).join(', ')}, … ${parameterText(values.at(-1))} ` +
-      `(${countText(values.length)} values)`
-    );
+    if (values.length <= MOST_VALUES) return values.join(', ');
+    const first = values.slice(0, 3).join(', ');
+    return `${first}, … ${values.at(-1)} (${countText(values.length)} values)`;
   }
 
   function targetText(target) {
@@ -31,8 +20,7 @@
     if (target?.samples !== undefined) parts.push(`${countText(target.samples)} samples per point`);
     if (target?.collisions !== undefined)
       parts.push(`${countText(target.collisions)} collisions per point`);
-    if (target?.tolerance !== undefined)
-      parts.push(`relative error ${parameterText(target.tolerance)}`);
+    if (target?.tolerance !== undefined) parts.push(`relative error ${target.tolerance}`);
     if (target?.budget)
       parts.push(`at most ${durationText(parseFloat(target.budget))} of computing time`);
     if (target?.estimate) parts.push(`of ${words(target.estimate)}`);

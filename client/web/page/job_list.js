@@ -296,13 +296,6 @@
     return new JobList(main, signal).keepFresh();
   }
 
-  Object.assign(ballpiston, {
-    showJobs,
-    stateElement,
-    stateText,
-    fractionOf,
-    progressText,
-    statusText,
-    addressOf,
-  });
+  Object.assign(ballpiston, {showJobs, addressOf, stateElement});
+  Object.assign(ballpiston, {stateText, fractionOf, progressText, statusText});
 })((globalThis.ballpiston ??= {}));

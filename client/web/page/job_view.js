@@ -30,15 +30,12 @@
     // Null if there are fewer than two steps.
     chart(name) {
       const steps = this.steps
-        .map(({samples, estimates}) => ({
-          samples,
-          ...estimates.find((estimate) => estimate.name === name),
-        }))
+        .map((step) => ({samples: step.samples, ...ballpiston.estimateOf(step, name)}))
         .filter((step) => ballpiston.isNumber(step.value));
       if (steps.length < 2) return null;
       const {exact, limit, samples: most} = steps.at(-1);
       const places = steps.map(({samples: x, value, standard_error: error}) => {
-        return {x, value, error, exact, limit};
+        return {x, value, error, exact, limit, source: 'measured'};
       });
       return {
         title: `Convergence of ${words(name)}`,
@@ -250,14 +247,8 @@
       this.follow = button('Follow the running point', onFollow);
       this.convergenceNote = element('p', {class: 'soft', hidden: true});
       this.view = new ballpiston.ResultView();
-      this.element = element(
-        'section',
-        {'aria-label': 'One point', hidden: true},
-        this.title,
-        this.follow,
-        this.view.element,
-        this.convergenceNote,
-      );
+      const parts = [this.title, this.follow, this.view.element, this.convergenceNote];
+      this.element = element('section', {'aria-label': 'One point', hidden: true}, parts);
     }
 
     show(point, record, isFollowing) {
@@ -273,6 +264,17 @@
         ? 'Convergence is recorded while the page is open.'
         : '';
       this.view.show(point, convergence ? [convergence] : []);
+    }
+
+    // `index`: null if no point was chosen. `isFinal`: no further result will arrive.
+    showMissing(index, job, isFinal) {
+      this.element.hidden = index === null;
+      const last = job.progress?.points - 1;
+      this.title.textContent =
+        index > last
+          ? `There is no point ${index}: the last one is point ${last}`
+          : `Point ${index} has no result${isFinal ? '' : ' yet'}`;
+      this.follow.hidden = ENDED.has(job.state);
     }
   }
 
@@ -333,7 +335,10 @@
         this.points.show(points, record, this.shown);
       }
       const point = record.points.get(this.shown);
-      if (!point) return;
+      if (!point) {
+        this.panel.showMissing(this.chosen, record.job, this.hasAll);
+        return;
+      }
       this.lastShown = this.shown;
       this.panel.show(point, record, this.chosen === null);
       this.askForDetails(point);
@@ -385,21 +390,16 @@
 
     // One watch until the job's end. Resumes where the last watch stopped.
     async watch(progress) {
-      const controller = ballpiston.whileVisible(this.signal);
-      try {
-        const updates = ballpiston.stream(
-          'EnsembleService/WatchEnsembleJob',
-          {name: this.name, resume_token: this.token},
-          controller.signal,
-        );
-        for await (const update of updates) {
-          progress();
-          this.token = update.resume_token ?? this.token;
-          this.record.takeUpdate(update);
-          this.drawSoon();
-        }
-      } finally {
-        controller.abort(new ballpiston.TabHidden());
+      const updates = ballpiston.streamWhileVisible(
+        'EnsembleService/WatchEnsembleJob',
+        {name: this.name, resume_token: this.token},
+        this.signal,
+      );
+      for await (const update of updates) {
+        progress();
+        this.token = update.resume_token ?? this.token;
+        this.record.takeUpdate(update);
+        this.drawSoon();
       }
     }
 
@@ -451,6 +451,8 @@
       this.drawSoon();
       this.watchStatus();
       await keepTrying((progress) => this.watch(progress), this.signal);
+      this.hasAll = true;
+      this.drawSoon();
     }
   }
 

@@ -74,14 +74,9 @@
       c.setTransform(1, 0, 0, 1, 0, 0);
       c.fillStyle = styleOf('--free');
       c.fillRect(0, 0, width, height);
-      c.setTransform(
-        this.scale,
-        0,
-        0,
-        -this.scale,
-        width / 2 - (this.scale * (left + right)) / 2,
-        height / 2 + (this.scale * (bottom + top)) / 2,
-      );
+      const [x, y] = [(left + right) / 2, (bottom + top) / 2]; // of the middle
+      c.setTransform(this.scale, 0, 0, -this.scale, width / 2, height / 2);
+      c.translate(-x, -y);
       return c;
     }
 
@@ -123,10 +118,8 @@
       const corners = [...this.trail, ball];
       for (let i = 1; i < corners.length; ++i) {
         c.globalAlpha = i / corners.length;
-        c.beginPath();
-        c.moveTo(corners[i - 1].x, corners[i - 1].y);
-        c.lineTo(corners[i].x, corners[i].y);
-        c.stroke();
+        const [from, to] = [corners[i - 1], corners[i]];
+        ballpiston.drawLine(c, [from.x, from.y], [to.x, to.y]);
       }
       c.globalAlpha = 1;
     }
@@ -149,12 +142,9 @@
         [styleOf('--text'), 7],
         [colourOf(piston.energy / this.mostEnergy), 4],
       ]) {
-        c.beginPath();
-        c.moveTo(x - alongX, y - alongY);
-        c.lineTo(x + alongX, y + alongY);
         c.strokeStyle = style;
         c.lineWidth = Math.max(width * this.pixel * (devicePixelRatio || 1) * this.thickness, 0);
-        c.stroke();
+        ballpiston.drawLine(c, [x - alongX, y - alongY], [x + alongX, y + alongY]);
       }
     }
 

@@ -12,24 +12,28 @@
   const SPEEDS = [0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20]; // units of time per second
   const MOST_HEIGHT = 0.7; // of the window
 
+  // Fields of text: in a field of type number some browsers read 0,5 as 5.
+  const NUMBER = {
+    inputmode: 'decimal',
+    pattern: '([0-9]+[.]?[0-9]*|[.][0-9]+)([eE]-?[0-9]+)?',
+    title: 'a number such as 0.5 or 1e3',
+  };
   const FIELDS = [
-    {name: 'rho', label: 'ρ, radius of the discs', value: '0.5296', step: 'any'},
-    {name: 'delta', label: 'δ, reach of the piston', value: '0.2', step: 'any'},
-    {name: 'cells', label: 'Cells, N or NxM; empty: a pair', value: '', text: true},
-    {name: 'temperature', label: 'Temperature of a gas', value: '1', step: 'any'},
-    {name: 'seed', label: 'Seed', value: '0', text: true, pattern: '[0-9]*'},
-    {name: 'events', label: 'Events', value: '10000', step: '1', min: 1, max: 1000000},
+    {name: 'rho', label: 'ρ, radius of the discs', value: '0.5296', ...NUMBER},
+    {name: 'delta', label: 'δ, reach of the piston', value: '0.2', ...NUMBER},
+    {name: 'cells', label: 'Cells, N or NxM; empty: a pair', value: ''},
+    {name: 'temperature', label: 'Temperature of a gas', value: '1', ...NUMBER},
+    {name: 'seed', label: 'Seed', value: '0', pattern: '[0-9]*'},
+    {name: 'events', label: 'Events', value: '10000', ...NUMBER, pattern: '[0-9]+([eE][0-9]+)?'},
   ];
 
-  function fieldElement({name, label, value, text, ...more}) {
+  function fieldElement({name, label, ...more}) {
     return element(
       'label',
       {class: 'field'},
       element('span', {}, label),
       element('input', {
         name,
-        value,
-        type: text ? 'text' : 'number',
         ...more,
         required: name === 'rho' || name === 'delta' || name === 'events',
         autocomplete: 'off',
@@ -65,26 +69,18 @@
       this.signal = signal;
       this.played = new EventTarget(); // sends 'advance' after events were played
       this.speed = SPEEDS.indexOf(1);
+      this.charted = 0; // when the chart was last drawn in a frame
       this.isPlaying = !matchMedia('(prefers-reduced-motion: reduce)').matches;
-      this.form = element(
-        'form',
-        {
-          class: 'fields',
-          onsubmit: (event) => {
-            event.preventDefault();
-            this.trace();
-          },
-        },
-        FIELDS.map(fieldElement),
-        element('button', {type: 'submit'}, 'Trace'),
-      );
+      const onsubmit = (event) => {
+        event.preventDefault();
+        this.trace();
+      };
+      const submit = element('button', {type: 'submit'}, 'Trace');
+      this.form = element('form', {class: 'fields', onsubmit}, FIELDS.map(fieldElement), submit);
+      const about = 'One orbit of the reference billiard, as ballpiston trace prints it.';
       main.append(
         element('h1', {tabindex: '-1'}, 'Orbit'),
-        element(
-          'p',
-          {class: 'soft'},
-          'One orbit of the reference billiard, as ballpiston trace prints it.',
-        ),
+        element('p', {class: 'soft'}, about),
         this.form,
         this.stage(),
         this.controls(),
@@ -102,6 +98,7 @@
       });
       const resizing = new ResizeObserver(() => this.fit());
       resizing.observe(document.getElementById('main'));
+      addEventListener('repaint', () => this.draw(), {signal: this.signal});
       this.signal.addEventListener('abort', () => resizing.disconnect());
       return this.canvas;
     }
@@ -180,6 +177,7 @@
 
     play(isPlaying) {
       this.isPlaying = isPlaying;
+      this.isSeeking = false;
       this.playButton.textContent = isPlaying ? 'Pause' : 'Play';
     }
 
@@ -191,10 +189,12 @@
       this.speedInput.setAttribute('aria-valuetext', this.speedText.textContent);
     }
 
+    // If no exchange is known, goes to the last known event, and on when events arrive.
     toNextExchange() {
-      const time = this.motion?.timeOfNext('ball_piston');
-      if (time === undefined) return;
-      this.advanceTo(time);
+      if (!this.motion) return;
+      const time = this.motion.timeOfNext('ball_piston');
+      this.isSeeking = time === undefined;
+      this.advanceTo(time ?? Infinity);
       this.draw();
     }
 
@@ -216,15 +216,17 @@
     // The same request gives the same events: a retry skips the known events.
     async read(request, progress, signal) {
       let known = this.request === request ? this.motion.count + this.motion.events.length : 0;
-      const messages = ballpiston.stream('TraceService/TraceOrbit', request, signal);
+      const messages = ballpiston.streamWhileVisible('TraceService/TraceOrbit', request, signal);
       for await (const {start, events = []} of messages) {
         progress();
         if (start && this.request !== request) this.begin(request, start);
         this.motion.add(events.slice(known));
         known = Math.max(0, known - events.length);
+        if (this.isSeeking) this.toNextExchange();
         await this.roomFor(signal);
       }
       this.motion.hasEnded = true;
+      this.draw();
     }
 
     async roomFor(signal) {
@@ -235,6 +237,7 @@
 
     begin(request, start) {
       this.request = request;
+      this.isSeeking = false;
       this.motion = new ballpiston.OrbitMotion(start);
       this.picture = new ballpiston.OrbitPicture(this.canvas, start);
       this.exchanges = [];
@@ -293,6 +296,7 @@
     }
 
     drawChart() {
+      this.chartTime = this.motion.time;
       const {isPair} = this.picture;
       const steps = [...this.exchanges, {...this.exchanges.at(-1), time: this.motion.time}];
       const x = steps.map((at) => at.time);
@@ -338,10 +342,10 @@
       if (this.motion && this.isPlaying) {
         this.advanceTo(this.motion.time + SPEEDS[this.speed] * seconds);
         this.draw();
-        if (now - (this.charted ?? 0) > CHART_EVERY) {
-          this.charted = now;
-          this.drawChart();
-        }
+      }
+      if (this.motion && this.motion.time !== this.chartTime && now - this.charted > CHART_EVERY) {
+        this.charted = now;
+        this.drawChart();
       }
       requestAnimationFrame((then) => this.frame(then));
     }

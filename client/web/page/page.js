@@ -47,8 +47,9 @@
     console.error(error);
   }
 
-  async function route() {
-    ballpiston.takeToken();
+  // `change`: the event of a new fragment; undefined when the page opens.
+  async function route(change) {
+    ballpiston.takeToken(change && new URL(change.oldURL).hash);
     const fragment = location.hash.slice(1);
     leave.abort();
     leave = new AbortController();
@@ -67,11 +68,6 @@
     }
   }
 
-  function applyTheme(theme) {
-    document.documentElement.dataset.theme = theme;
-    ballpiston.repaintCharts();
-  }
-
   function setUpTheme() {
     const storage = ballpiston.storage('localStorage');
     const stored = storage.getItem(THEME);
@@ -82,14 +78,20 @@
       theme,
       (chosen) => {
         storage.setItem(THEME, chosen);
-        applyTheme(chosen);
+        ballpiston.setTheme(chosen);
       },
     );
     document.getElementById('theme').append(chooser);
-    applyTheme(theme);
+    ballpiston.setTheme(theme);
   }
 
   setUpTheme();
-  addEventListener('hashchange', route);
-  route();
+  if (AbortSignal.any && CSS.supports('color', 'light-dark(red, red)')) {
+    addEventListener('hashchange', route);
+    route();
+  } else {
+    ballpiston.say(
+      'This browser is too old. Use Chrome or Edge 123, Firefox 124, Safari 17.5 or newer.',
+    );
+  }
 })((globalThis.ballpiston ??= {}));

@@ -24,16 +24,19 @@
 
   function panels(entry, pictured) {
     const {job, points} = entry;
+    const inTable = points.length > MOST_ROWS ? `the first ${countText(MOST_ROWS)}` : 'all';
     const leftOut = (job.progress?.points_done ?? 0) - points.length;
     return [
       outcomeText(job),
       job.results_expired || (leftOut > 0 && points.length === 0)
         ? 'The results have expired; only the specification is kept.'
         : null,
-      leftOut > 0 && points.length > 0 ? `${countText(leftOut)} further points are not in this report.` : null,
+      leftOut > 0 && points.length > 0
+        ? `${countText(leftOut)} further points are not in this report.`
+        : null,
       points.length > pictured
-        ? `The first ${pictured} of ${countText(points.length)} points have tables and pictures; all ` +
-          'are in the table at the end.'
+        ? `The first ${pictured} of ${countText(points.length)} points have tables and pictures; ` +
+          `the table at the end has ${inTable}.`
         : null,
     ]
       .filter(Boolean)
@@ -97,19 +100,5 @@
     jobs.forEach((entry) => showJob(main, entry));
   }
 
-  // Draws the charts with the light theme for print.
-  function printLight() {
-    const root = document.documentElement;
-    addEventListener('beforeprint', () => {
-      root.dataset.theme = 'light';
-      ballpiston.repaintCharts();
-    });
-    addEventListener('afterprint', () => {
-      delete root.dataset.theme;
-      ballpiston.repaintCharts();
-    });
-  }
-
-  printLight();
   showReport(JSON.parse(document.getElementById('data').textContent));
 })((globalThis.ballpiston ??= {}));

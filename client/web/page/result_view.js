@@ -209,13 +209,14 @@
 
   // ---- Curves
 
-  function curveChart(curve) {
+  function curveChart(curve, source) {
     const isProfile = curve.points.some((at) => isNumber(at.position));
     const places = curve.points.map(({position, time, value, standard_error: error, limit}) => ({
       x: (isProfile ? position : time) ?? 0,
       value,
       error,
       limit,
+      source,
     }));
     return {
       title: CURVE_LABELS[curve.name] ?? words(curve.name),
@@ -226,7 +227,9 @@
   }
 
   const curveCharts = (point) =>
-    (point.curves ?? []).filter((curve) => curve.points.length).map(curveChart);
+    (point.curves ?? [])
+      .filter((curve) => curve.points.length)
+      .map((curve) => curveChart(curve, ballpiston.sourceOf(point)));
 
   // ---- The whole point
 
@@ -240,11 +243,15 @@
 
     // `further`: more charts, shown before the histograms, in the form of Chart.
     show(point, further = []) {
-      this.text.replaceChildren(
+      const text = element(
+        'div',
+        {},
         estimateTable(point, `Estimates at ${parametersText(point.parameters)}`),
-        remarks(point) ?? '',
+        remarks(point),
         pointFacts(point),
       );
+      // New elements would end the reader's selection of text.
+      if (!text.isEqualNode(this.text)) this.text.replaceChildren(...text.childNodes);
       this.showCharts([...further, ...histogramCharts(point), ...curveCharts(point)]);
     }
 
