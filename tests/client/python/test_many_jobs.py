@@ -96,7 +96,8 @@ def test_cancel_by_label_asks_and_takes_no_for_an_answer(home: Home) -> None:
         job = client.submit(**ENDLESS, labels={"run": "endless"})
         words = [home.programs / "ballpiston", "cancel", "--label", "run=endless"]
         asked = subprocess.run(words, input="n\n", capture_output=True, text=True, check=False)
-        assert "cancel 1 job? [y/N]" in asked.stderr and "nothing was changed" in asked.stderr
+        assert "cancel 1 job of local? [y/N]" in asked.stderr
+        assert "nothing was changed" in asked.stderr
         assert not job.has_ended
         assert subprocess.run(words, input="y\n", text=True, check=False).returncode == 0
         assert job.refresh().message.state != ballpiston.v1.ensemble_pb2.EnsembleJob.RUNNING
