@@ -1,8 +1,10 @@
 // ballpiston cancel, delete, pin and label: each changes jobs, and prints the new state of each.
 #include <iostream>
+#include <set>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "client/command/connection.h"
 #include "client/command/selection.h"
 #include "client/output/answers.h"
@@ -12,13 +14,15 @@
 namespace ballpiston::client {
 namespace {
 
-// With --label and without --yes, prints how many jobs `action` ("delete") concerns, and reads the
-// answer. CANCELLED if it is not y or yes.
-absl::Status Confirm(const std::string& action, const std::vector<std::string>& names,
+// With --label and without --yes, prints how many jobs `action` ("delete") concerns and whose they
+// are, and reads the answer. CANCELLED if it is not y or yes.
+absl::Status Confirm(const std::string& action, const std::vector<v1::EnsembleJob>& jobs,
                      const Options& options, const Terminal& terminal) {
-  if (!options.jobs.empty() || options.yes) return absl::OkStatus();
-  terminal.err << action << ' ' << Counted(static_cast<double>(names.size()), "job") << "? [y/N] "
-               << std::flush;
+  if (!options.jobs.empty() || options.yes || jobs.empty()) return absl::OkStatus();
+  std::set<std::string> owners;
+  for (const v1::EnsembleJob& job : jobs) owners.insert(job.principal());
+  terminal.err << action << ' ' << Counted(static_cast<double>(jobs.size()), "job") << " of "
+               << absl::StrJoin(owners, ", ") << "? [y/N] " << std::flush;
   std::string answer;
   std::getline(std::cin, answer);
   absl::AsciiStrToLower(&answer);
@@ -54,17 +58,22 @@ absl::Status PinJob(const Connection& connection, const std::string& name, const
   return absl::OkStatus();
 }
 
-// Changes every job, also after an error. Returns the first error.
+// Changes every job, also after an error. Returns the first error. A pinned job is deleted only by
+// its name.
 VerbResult Change(const std::string& action, decltype(&CancelJob) change, const JobStates& states,
                   const Options& options, const Terminal& terminal) {
-  return WithJobs(options, terminal, states,
-                  [&](const auto& connection, const auto& names) -> VerbResult {
-                    absl::Status status = Confirm(action, names, options, terminal);
-                    if (!status.ok()) return status;
-                    for (const auto& name : names)
-                      status.Update(change(connection, name, options, terminal));
-                    return status.ok() ? VerbResult(ExitCode::kDone) : status;
-                  });
+  const auto stays = [&](const v1::EnsembleJob& job) {
+    const bool is_kept = job.pinned() && change == &DeleteJob;
+    if (is_kept) terminal.Note(job.name() + " is pinned and stays; delete it by its name");
+    return is_kept;
+  };
+  return WithJobs(options, terminal, states, [&](const auto& connection, auto jobs) -> VerbResult {
+    std::erase_if(jobs, stays);
+    absl::Status status = Confirm(action, jobs, options, terminal);
+    if (!status.ok()) return status;
+    for (const auto& job : jobs) status.Update(change(connection, job.name(), options, terminal));
+    return status.ok() ? VerbResult(ExitCode::kDone) : status;
+  });
 }
 
 }  // namespace

@@ -19,14 +19,13 @@ VerbResult Analytic(const Options& options, Terminal& terminal) {
 }
 
 VerbResult Plan(const Options& options, Terminal& terminal) {
-  return WithQuestion(
-      options, terminal,
-      [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
-        const auto plan = connection.client.Plan(spec);
-        if (!plan.ok()) return plan.status();
-        PrintPlan(spec, *plan, options.format, terminal.out);
-        return ExitCode::kDone;
-      });
+  return WithQuestion(options, terminal,
+                      [&](const Connection& connection, const Options& asked) -> VerbResult {
+                        const auto plan = connection.client.Plan(asked.spec);
+                        if (!plan.ok()) return plan.status();
+                        PrintPlan(asked.spec, *plan, options.format, terminal.out);
+                        return ExitCode::kDone;
+                      });
 }
 
 VerbResult ListJobs(const Options& options, Terminal& terminal) {

@@ -204,7 +204,7 @@ VerbResult Figure(const Options& options, Terminal& terminal) {
 }
 
 VerbResult Export(const Options& options, Terminal& terminal) {
-  if (!options.jobs.empty() && !options.labels.empty()) {
+  if (!options.jobs.empty() && options.given.contains("--label")) {
     return absl::InvalidArgumentError(
         "--label and names of jobs exclude each other: give one of them, or neither");
   }

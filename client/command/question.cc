@@ -97,11 +97,17 @@ VerbResult WithQuestion(const Options& options, const Terminal& terminal,
                         const VerbOfQuestion& verb) {
   const absl::StatusOr<v1::EnsembleSpec> spec = SpecOf(options);
   if (!spec.ok()) return spec.status();
+  Options asked = options;
+  asked.spec = *spec;
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    if (options.again.empty()) return verb(connection, *spec);
+    if (options.again.empty()) return verb(connection, asked);
     const auto job = connection.client.Get(options.again);
     if (!job.ok()) return job.status();
-    return verb(connection, job->spec());
+    asked.spec = job->spec();
+    if (!options.given.contains("--label")) {
+      asked.labels = {job->labels().begin(), job->labels().end()};
+    }
+    return verb(connection, asked);
   });
 }
 

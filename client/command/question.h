@@ -20,10 +20,10 @@ namespace ballpiston::client {
 // be used. With --again the returned specification is empty: WithQuestion reads it from the server.
 absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options);
 
-using VerbOfQuestion = std::function<VerbResult(const Connection&, const v1::EnsembleSpec&)>;
+using VerbOfQuestion = std::function<VerbResult(const Connection&, const Options& asked)>;
 
-// Checks the command line, connects, and runs `verb` with the specification. With --again the
-// specification is read from the job.
+// Checks the command line, connects, and runs `verb` with the options, in which `spec` is complete:
+// with --again it is that of the job, and so are the labels unless --label is given.
 VerbResult WithQuestion(const Options& options, const Terminal& terminal,
                         const VerbOfQuestion& verb);
 

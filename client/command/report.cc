@@ -52,16 +52,16 @@ absl::StatusOr<std::string> JobJson(const Connection& connection, const std::str
 }
 
 absl::StatusOr<std::string> Data(const Connection& connection,
-                                 const std::vector<std::string>& names) {
-  std::vector<std::string> jobs;
-  for (const std::string& name : names) {
-    const auto job = JobJson(connection, name);
-    if (!job.ok()) return job.status();
-    jobs.push_back(*job);
+                                 const std::vector<v1::EnsembleJob>& jobs) {
+  std::vector<std::string> texts;
+  for (const v1::EnsembleJob& job : jobs) {
+    const auto text = JobJson(connection, job.name());
+    if (!text.ok()) return text.status();
+    texts.push_back(*text);
   }
   return absl::StrCat("{\"client_version\":\"", BALLPISTON_VERSION, "\",\"created\":\"",
                       absl::FormatTime(absl::RFC3339_sec, absl::Now(), absl::UTCTimeZone()),
-                      "\",\"jobs\":[", absl::StrJoin(jobs, ",\n"), "]}");
+                      "\",\"jobs\":[", absl::StrJoin(texts, ",\n"), "]}");
 }
 
 }  // namespace
@@ -71,8 +71,8 @@ VerbResult ReportJobs(const Options& options, Terminal& terminal) {
   const auto files = ReadPageFiles();
   if (!files.ok()) return files.status();
   return WithJobs(options, terminal, {},
-                  [&](const auto& connection, const auto& names) -> VerbResult {
-                    const auto data = Data(connection, names);
+                  [&](const auto& connection, const auto& jobs) -> VerbResult {
+                    const auto data = Data(connection, jobs);
                     if (!data.ok()) return data.status();
                     const auto page = OneFilePage(*files, "report.html", *data);
                     if (!page.ok()) return page.status();

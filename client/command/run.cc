@@ -15,6 +15,7 @@
 #include "client/command/question.h"
 #include "client/command/selection.h"
 #include "client/command/verb_table.h"
+#include "client/library/error_text.h"
 #include "client/library/quoted.h"
 #include "client/library/request_id.h"
 #include "client/output/new_file.h"
@@ -68,11 +69,10 @@ absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection,
 // A retry (library/client.h) uses the same request id: if a private server stored the job and
 // stopped before it answered, the retry returns that job. With --resume the id is derived from the
 // specification and the engine's version.
-absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection,
-                                          const v1::EnsembleSpec& spec, const Options& options,
+absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection, const Options& options,
                                           const Terminal& terminal) {
   v1::CreateEnsembleJobRequest request = options.create;
-  *request.mutable_spec() = spec;
+  *request.mutable_spec() = options.spec;
   request.mutable_labels()->insert(options.labels.begin(), options.labels.end());
   if (!request.request_id().empty()) return CreateOnce(connection, request, terminal);
   if (options.resume) return Resume(connection, request, options.labels, terminal);
@@ -83,10 +83,14 @@ absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection,
 // The note for a job that uses what is stored, else empty.
 std::string ReusedText(const v1::EnsembleJob& job) {
   if (job.answered_from_store()) {
-    const absl::Time end = absl::FromUnixSeconds(job.end_time().seconds());
-    return absl::StrCat("answered from the store: ", job.name(), ", computed ",
-                        absl::FormatTime("%Y-%m-%d %H:%M UTC", end, absl::UTCTimeZone()),
-                        " (--fresh computes it again)");
+    const auto text = [](const google::protobuf::Timestamp& time) {
+      return absl::FormatTime("%Y-%m-%d %H:%M UTC", absl::FromUnixSeconds(time.seconds()),
+                              absl::UTCTimeZone());
+    };
+    const bool may_expire = job.has_expire_time() && !job.pinned();
+    return absl::StrCat(
+        "answered from the store: ", job.name(), ", computed ", text(job.end_time()),
+        may_expire ? ", expires " + text(job.expire_time()) : "", " (--fresh computes it again)");
   }
   if (job.continues().empty()) return "";
   return absl::StrCat("continues ", job.continues(), ": what it needs of the ",
@@ -184,15 +188,18 @@ absl::StatusOr<v1::ListResultsResponse> PageOf(const Connection& connection,
 }
 
 // If the server restarts, requests only the current page again: the earlier pages have been
-// printed. Calls Begin of the writer when the first page has arrived.
+// printed. Calls Begin of the writer when the first page has arrived. Without `has_names` the same
+// points give the same bytes: their names have the job's id.
 absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job,
-                         const Options& options, Destination& destination, std::ostream& err) {
+                         const Options& options, bool has_names, Destination& destination,
+                         std::ostream& err) {
   std::string token;
   do {
-    const auto page = PageOf(connection, job.name(), options, destination.view(), token);
+    auto page = PageOf(connection, job.name(), options, destination.view(), token);
     if (!page.ok()) return HintIfExpired(page.status(), connection, job.name());
     if (token.empty()) destination.writer().Begin(job);
-    for (const v1::PointResult& point : page->results()) {
+    for (v1::PointResult& point : *page->mutable_results()) {
+      if (!has_names) point.clear_name();
       AddPoint(point, destination.writer(), err);
     }
     token = page->next_page_token();
@@ -221,7 +228,7 @@ absl::Status CheckSave(const Options& options) {
     return absl::InvalidArgumentError(
         absl::StrCat("--save: ", Quoted(options.save), " does not end in .json, .csv or .npz"));
   }
-  const bool is_usual = options.format == Format::kTable;
+  const bool is_usual = options.format == Format::kTable || !options.given.contains("--format");
   if (!is_usual && (IsNpz(options) || options.format != FormatOf(options))) {
     return absl::InvalidArgumentError(
         absl::StrCat("--save: ", options.save, " does not go with --format ",
@@ -237,13 +244,14 @@ absl::Status CheckSave(const Options& options) {
 // Prints the finished points, also of a job that failed or was cancelled. `answered_from_store` is
 // the value that Create returned: the server does not store it.
 VerbResult PrintResult(const Connection& connection, const std::string& name,
-                       const Options& options, Terminal& terminal,
-                       bool answered_from_store = false) {
+                       const Options& options, Terminal& terminal, bool answered_from_store,
+                       bool has_names = false) {
   auto job = connection.client.Get(name);
   if (!job.ok()) return job.status();
   job->set_answered_from_store(answered_from_store);
   Destination destination(options, terminal);
-  const absl::Status status = PrintPoints(connection, *job, options, destination, terminal.err);
+  const absl::Status status =
+      PrintPoints(connection, *job, options, has_names, destination, terminal.err);
   if (!status.ok()) return status;
   return End(*job, destination, terminal);
 }
@@ -251,23 +259,22 @@ VerbResult PrintResult(const Connection& connection, const std::string& name,
 }  // namespace
 
 VerbResult Submit(const Options& options, Terminal& terminal) {
-  return WithQuestion(
-      options, terminal,
-      [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
-        const auto job = CreateJob(connection, spec, options, terminal);
-        if (!job.ok()) return job.status();
-        if (const std::string reused = ReusedText(*job); !reused.empty()) terminal.Note(reused);
-        terminal.out << job->name() << '\n';
-        return ExitCode::kDone;
-      });
+  return WithQuestion(options, terminal,
+                      [&](const Connection& connection, const Options& asked) -> VerbResult {
+                        const auto job = CreateJob(connection, asked, terminal);
+                        if (!job.ok()) return job.status();
+                        const std::string reused = ReusedText(*job);
+                        if (!reused.empty()) terminal.Note(reused);
+                        terminal.out << job->name() << '\n';
+                        return ExitCode::kDone;
+                      });
 }
 
 VerbResult Run(const Options& options, Terminal& terminal) {
   if (absl::Status bad = CheckSave(options); !bad.ok()) return bad;
   return WithQuestion(
-      options, terminal,
-      [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
-        const auto made = CreateJob(connection, spec, options, terminal);
+      options, terminal, [&](const Connection& connection, const Options& asked) -> VerbResult {
+        const auto made = CreateJob(connection, asked, terminal);
         if (!made.ok()) return made.status();
         const bool is_silent =
             options.verbosity == Verbosity::kQuiet || options.progress == ProgressStyle::kNone;
@@ -292,15 +299,19 @@ VerbResult Run(const Options& options, Terminal& terminal) {
 VerbResult Result(const Options& options, Terminal& terminal) {
   if (absl::Status bad = CheckSave(options); !bad.ok()) return bad;
   return WithJobs(
-      options, terminal, {}, [&](const auto& connection, const auto& names) -> VerbResult {
-        if (names.size() > 1 && (!options.save.empty() || options.format == Format::kCsv)) {
-          return TooMany(names.size());
+      options, terminal, {}, [&](const auto& connection, const auto& jobs) -> VerbResult {
+        if (jobs.size() > 1 && (!options.save.empty() || options.format == Format::kCsv)) {
+          return TooMany(jobs.size());
         }
+        const bool has_names = jobs.size() > 1 && options.format == Format::kJsonl;
         ExitCode worst = ExitCode::kDone;
         absl::Status missing;
-        for (const std::string& name : names) {
-          const VerbResult result = PrintResult(connection, name, options, terminal);
-          if (!result.ok() && !absl::IsNotFound(result.status())) return result;
+        for (const v1::EnsembleJob& job : jobs) {
+          const VerbResult result = PrintResult(connection, job.name(), options, terminal,
+                                                /*answered_from_store=*/false, has_names);
+          const bool is_missing = absl::IsNotFound(result.status()) ||
+                                  ErrorReason(result.status()) == "RESULTS_EXPIRED";
+          if (!result.ok() && !is_missing) return result;
           missing.Update(result.status());
           if (result.ok()) worst = std::max(worst, *result);
         }

@@ -53,11 +53,10 @@ VerbResult Sample(const Options& options, Terminal& terminal) {
   if (bad.ok() && !is_csv) bad = CheckPythonFor(options.out);
   if (!bad.ok()) return bad;
   return WithQuestion(
-      options, terminal,
-      [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
-        if (is_csv) return WriteCsv(connection, spec, options.out, terminal);
-        return RunPythonProgram("ballpiston.command", {"sample", options.out, Json(spec)}, options,
-                                terminal);
+      options, terminal, [&](const Connection& connection, const Options& asked) -> VerbResult {
+        if (is_csv) return WriteCsv(connection, asked.spec, options.out, terminal);
+        return RunPythonProgram("ballpiston.command", {"sample", options.out, Json(asked.spec)},
+                                options, terminal);
       });
 }
 

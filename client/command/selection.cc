@@ -26,20 +26,19 @@ absl::Status NoneFound(const JobStates& states) {
                                           absl::StrJoin(states, ", ", spelled)));
 }
 
-absl::StatusOr<std::vector<std::string>> SelectedJobs(const Connection& connection,
-                                                      const Options& options,
-                                                      const JobStates& states) {
-  if (!options.jobs.empty()) return options.jobs;
+absl::StatusOr<std::vector<v1::EnsembleJob>> SelectedJobs(const Connection& connection,
+                                                          const Options& options,
+                                                          const JobStates& states) {
+  std::vector<v1::EnsembleJob> named;
+  for (const std::string& name : options.jobs) named.emplace_back().set_name(name);
+  if (!named.empty()) return named;
   v1::ListEnsembleJobsRequest request;
   request.set_view(v1::ListEnsembleJobsRequest::BASIC);
   request.mutable_labels()->insert(options.labels.begin(), options.labels.end());
   for (const auto state : states) request.add_states(state);
-  const auto jobs = connection.client.List(request);
-  if (!jobs.ok()) return jobs.status();
-  if (jobs->empty()) return NoneFound(states);
-  std::vector<std::string> names;
-  for (const v1::EnsembleJob& job : *jobs) names.push_back(job.name());
-  return names;
+  auto jobs = connection.client.List(request);
+  if (jobs.ok() && jobs->empty()) return NoneFound(states);
+  return jobs;
 }
 
 }  // namespace
@@ -48,9 +47,9 @@ VerbResult WithJobs(const Options& options, const Terminal& terminal, const JobS
                     const VerbOfJobs& verb) {
   if (absl::Status bad = CheckSelection(options); !bad.ok()) return bad;
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    const auto names = SelectedJobs(connection, options, states);
-    if (!names.ok()) return names.status();
-    return verb(connection, *names);
+    const auto jobs = SelectedJobs(connection, options, states);
+    if (!jobs.ok()) return jobs.status();
+    return verb(connection, *jobs);
   });
 }
 

@@ -18,11 +18,11 @@ inline const JobStates kEndedStates = {v1::EnsembleJob::SUCCEEDED, v1::EnsembleJ
                                        v1::EnsembleJob::CANCELLED};
 
 using VerbOfJobs =
-    std::function<VerbResult(const Connection&, const std::vector<std::string>& names)>;
+    std::function<VerbResult(const Connection&, const std::vector<v1::EnsembleJob>&)>;
 
-// Connects and calls `verb` with the named jobs; with --label with those in one of the states
-// (empty: any), newest first. INVALID_ARGUMENT if there are neither names nor labels, or both.
-// NOT_FOUND if no job has the labels.
+// Connects and calls `verb` with the named jobs, of which only the name is known; with --label with
+// those in one of the states (empty: any), newest first. INVALID_ARGUMENT if there are neither
+// names nor labels, or both. NOT_FOUND if no job has the labels.
 VerbResult WithJobs(const Options& options, const Terminal& terminal, const JobStates& states,
                     const VerbOfJobs& verb);
 

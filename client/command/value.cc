@@ -1,9 +1,12 @@
 #include "client/command/value.h"
 
+#include <google/protobuf/util/time_util.h>
+
 #include <algorithm>
 #include <map>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
@@ -12,6 +15,9 @@
 
 namespace ballpiston::client {
 namespace {
+
+using google::protobuf::Timestamp;
+using google::protobuf::util::TimeUtil;
 
 // A value that `parse` reads from the text and `store` stores.
 template <typename T, typename Parse>
@@ -67,14 +73,11 @@ absl::StatusOr<std::map<std::string, std::string>> ParseLabels(const std::string
   return labels;
 }
 
-// A Timestamp has the years 0001 to 9999. ParseTime also reads 26, 12026 and infinite-future.
-absl::StatusOr<absl::Time> ParseDate(const std::string& text) {
-  absl::Time time;
-  std::string error;
-  const bool has_year = text.find('-') == 4 && text >= "0001";
-  for (const char* format : {"%Y-%m-%d", "%Y-%m-%dT%H:%M:%SZ"}) {
-    if (has_year && absl::ParseTime(format, text, &time, &error)) return time;
-  }
+// FromString also reads years with fewer digits.
+absl::StatusOr<Timestamp> ParseDate(const std::string& text) {
+  Timestamp time;
+  const std::string full = absl::StrContains(text, 'T') ? text : text + "T00:00:00Z";
+  if (text.find('-') == 4 && TimeUtil::FromString(full, &time)) return time;
   return NotPermitted(text, "is not a date (UTC): write 2026-01-31 or 2026-01-31T12:00:00Z");
 }
 
@@ -119,7 +122,7 @@ Value Words(std::string name, Store<std::string> store) {
   return Parsed(std::move(name), any, std::move(store));
 }
 
-Value Date(Store<absl::Time> store) { return Parsed("DATE", ParseDate, std::move(store)); }
+Value Date(Store<Timestamp> store) { return Parsed("DATE", ParseDate, std::move(store)); }
 
 Value Job(Store<std::string> store) {
   return Parsed("JOB", ParseJobName, std::move(store), Offer::kJob);

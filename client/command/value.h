@@ -13,7 +13,6 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_split.h"
-#include "absl/time/time.h"
 #include "client/command/options.h"
 #include "client/command/suggestion.h"
 #include "client/output/spelling.h"
@@ -52,7 +51,7 @@ Value Seed(Store<uint64_t> store);
 Value List(Store<std::vector<double>> store);             // LIST (number_list.h)
 Value Shapes(Store<std::vector<std::string>> store);      // LIST of shapes
 Value Words(std::string name, Store<std::string> store);  // each word
-Value Date(Store<absl::Time> store);
+Value Date(Store<google::protobuf::Timestamp> store);
 Value Job(Store<std::string> store);               // ensembleJobs/ID
 Value Labels(std::string name);                    // KEY=VALUE, separated by commas
 Value Passed(std::string name, std::string flag);  // to ballpistond, with its flag

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "absl/algorithm/container.h"
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
@@ -181,8 +182,8 @@ const FlagGroup kMethod = {
            "JSON file with the whole specification; - is standard input; it replaces EXPERIMENT "
            "and all flags of grid, target and method"}),
      Rare({"--again", Job(To(&Options::again)),
-           "use the specification of this job; for instance because its results have expired; it "
-           "replaces EXPERIMENT and all flags of grid, target and method"})}};
+           "use the specification of this job, and its labels unless --label is given; it replaces "
+           "EXPERIMENT and all flags of grid, target and method"})}};
 
 const FlagGroup kJob = {
     "Job",
@@ -268,8 +269,8 @@ const FlagGroup kListFilter = {
           "EXPERIMENTS", EnumChoices<Spec::Experiment>(),
           [](Options& o, Spec::Experiment x) { o.which_jobs.add_experiments(x); }),
       "only jobs with one of these experiments"},
-     {"--since", Date([](Options& o, absl::Time time) {
-        o.which_jobs.mutable_since()->set_seconds(absl::ToUnixSeconds(time));
+     {"--since", Date([](Options& o, const google::protobuf::Timestamp& time) {
+        *o.which_jobs.mutable_since() = time;
       }),
       "only jobs submitted at this time (UTC) or later"},
      {"--label", Labels("KEY=VALUE"), "only jobs with this label; may be repeated"},
@@ -367,7 +368,9 @@ const Store<std::string> kWords = [](Options& options, std::string word) {
   options.words.push_back(std::move(word));
 };
 
+// A job that is named twice counts once.
 const Store<std::string> kJobs = [](Options& options, std::string name) {
+  if (absl::c_linear_search(options.jobs, name)) return;
   options.jobs.push_back(std::move(name));
 };
 
@@ -494,7 +497,7 @@ std::vector<Verb> AllVerbs() {
        &Label},
       {"delete",
        "delete ended jobs and their results",
-       "Prints the name of each job that it deleted.",
+       "Prints the name of each job that it deleted. --label deletes no pinned job.",
        {kJobsOrLabels},
        With({&kConfirmed, &kServer}),
        {"delete ensembleJobs/ID", "delete ID1 ID2", "delete --label who=pilot"},
@@ -542,9 +545,11 @@ std::vector<Verb> AllVerbs() {
        /*passes_words_on=*/true},
       {"export",
        "write the estimates of many jobs to one file",
-       "A row for each estimate of each point, with the job, its labels, seed, engine version and "
-       "parameters. Without JOB and --label: of all your jobs. Needs Python with the package "
-       "ballpiston, and for .parquet pandas and pyarrow. Prints the path of the file.",
+       "A row for each estimate of each point, with the job, its owner, labels, seed, precision, "
+       "engine version and parameters. Without JOB and --label: of all jobs, for an administrator "
+       "also those of other users. A job whose column 'continues' names another one contains its "
+       "samples: do not average the two. Needs Python with the package ballpiston, and for "
+       ".parquet pandas and pyarrow. Prints the path of the file.",
        {{Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kAny}},
        With({&kTableFile, &kSelection, &kServer}),
        {"export --label run=7 --out run7.csv", "export ID1 ID2 --out two.parquet"},

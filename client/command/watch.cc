@@ -37,7 +37,7 @@ VerbResult Finish(const Ended& job, const Options& options, const Terminal& term
 
 // Watches each job on a thread of its own, and prints its name and state when it ends. With --any
 // the first one ends the other watches.
-VerbResult WatchSeveral(const Connection& connection, const std::vector<std::string>& names,
+VerbResult WatchSeveral(const Connection& connection, const std::vector<v1::EnsembleJob>& jobs,
                         const Options& options, Terminal& terminal) {
   std::mutex mutex;  // one job at a time is reported
   absl::Status first_error;
@@ -57,7 +57,7 @@ VerbResult WatchSeveral(const Connection& connection, const std::vector<std::str
     if (result.ok()) worst = std::max(worst, *result);
   };
   std::vector<std::jthread> threads;
-  for (const std::string& name : names) threads.emplace_back(watch, name);
+  for (const v1::EnsembleJob& job : jobs) threads.emplace_back(watch, job.name());
   threads.clear();  // waits for them
   return first_error.ok() ? VerbResult(worst) : first_error;
 }
@@ -66,9 +66,9 @@ VerbResult WatchSeveral(const Connection& connection, const std::vector<std::str
 
 VerbResult Watch(const Options& options, Terminal& terminal) {
   const JobStates states = options.any ? kActiveStates : JobStates();
-  return WithJobs(options, terminal, states, [&](const auto& connection, const auto& names) {
-    if (names.size() > 1) return WatchSeveral(connection, names, options, terminal);
-    return Finish(FollowJob(connection, names.front(), StyleOf(options), terminal), options,
+  return WithJobs(options, terminal, states, [&](const auto& connection, const auto& jobs) {
+    if (jobs.size() > 1) return WatchSeveral(connection, jobs, options, terminal);
+    return Finish(FollowJob(connection, jobs.front().name(), StyleOf(options), terminal), options,
                   terminal);
   });
 }

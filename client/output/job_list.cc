@@ -24,8 +24,8 @@ const Cells kFields = {"name",
                        "progress.samples",
                        "create_time",
                        "end_time"};
-const Cells kMoreInCsv = {"principal",   "priority",        "pinned",
-                          "expire_time", "results_expired", "stored_bytes"};
+const Cells kMoreInCsv = {"principal",       "priority",     "pinned",   "expire_time",
+                          "results_expired", "stored_bytes", "continues"};
 
 // "expires in 3 days", "expires in 5 hours": the remaining time, rounded down.
 std::string ExpiryText(absl::Duration left) {

@@ -29,9 +29,7 @@ class JsonWriter : public ResultWriter {
          << ",\n\"points\": [";
   }
   void Add(const v1::PointResult& point) override {
-    v1::PointResult nameless = point;
-    nameless.clear_name();
-    out_ << (is_document_ ? separator_ : "") << Json(nameless) << (is_document_ ? "" : "\n");
+    out_ << (is_document_ ? separator_ : "") << Json(point) << (is_document_ ? "" : "\n");
     separator_ = ",\n";
   }
   void End() override { out_ << (is_document_ ? "\n]}\n" : ""); }
@@ -111,13 +109,14 @@ class TableWriter : public ResultWriter {
 
  private:
   std::string Heading() const {
-    return absl::StrCat(Spelling(job_.spec().experiment()), ", ",
-                        models_.empty() ? "no finished points"
-                                        : absl::StrCat("model ", absl::StrJoin(models_, ", ")),
-                        ", seed ", job_.spec().seed(), ", engine ", job_.engine_version(), "  (",
-                        job_.name(), ", ", Spelling(job_.state()), ", ",
-                        job_.progress().points_done(), " of ", job_.progress().points(),
-                        " points)");
+    return absl::StrCat(
+        Spelling(job_.spec().experiment()), ", ",
+        models_.empty() ? "no finished points"
+                        : absl::StrCat("model ", absl::StrJoin(models_, ", ")),
+        job_.spec().precision() == v1::EnsembleSpec::SINGLE ? ", single precision" : "", ", seed ",
+        job_.spec().seed(), ", engine ", job_.engine_version(), "  (", job_.name(), ", ",
+        Spelling(job_.state()), ", ", job_.progress().points_done(), " of ",
+        job_.progress().points(), " points)");
   }
 
   static Cells Titles() {

@@ -11,8 +11,7 @@
 // Absent values are empty. A table has the column model only if the points have different models,
 // and model_error, noise_floor and limit only if an estimate has the value. Each remark is a line
 // below the estimates of its point, and the reasons for the models are below the table
-// (model_reasons.h). CSV has no remarks. Tables and CSV have neither histograms nor curves. The
-// same points give the same bytes: the names of the points, which have the job's id, are left out.
+// (model_reasons.h). CSV has no remarks. Tables and CSV have neither histograms nor curves.
 #pragma once
 
 #include <memory>

@@ -135,8 +135,10 @@ std::optional<JobRecord> FindAnswer(Database& database, const std::string& princ
   if (question.empty()) return std::nullopt;
   Query query =
       database.Select(SelectJobs(Grid::kLeftOut,
-                                 "principal = ? AND question = ? AND question <> x'' AND state = 4"
-                                 " AND expired = 0 ORDER BY sequence LIMIT ?"),
+                                 "sequence IN (SELECT sequence FROM jobs WHERE principal = ?"
+                                 " AND question = ? AND question <> x'' AND state = 4"
+                                 " AND expired = 0 ORDER BY sequence DESC LIMIT ?)"
+                                 " ORDER BY pinned DESC, end_time DESC"),
                       principal, Blob{question}, kMostAnswers);
   while (query.Next()) {
     const JobRecord record = RecordOf(query);

@@ -49,9 +49,9 @@ std::optional<JobRecord> FindJobOfRequest(Database& database, const std::string&
 std::optional<JobRecord> FindJobOfCancellation(Database& database, const std::string& principal,
                                                const std::string& request_id);
 
-// The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question) and for
-// which `accepts` returns true, given the job without its grid. Looks only at the kMostAnswers
-// oldest jobs.
+// The principal's job that SUCCEEDED in answering the question (JobRecord::question) and for which
+// `accepts` returns true, given the job without its grid: a pinned one, else the one whose results
+// expire last. Looks only at the kMostAnswers newest jobs.
 inline constexpr int kMostAnswers = 1'000;
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
                                     const std::string& question,

@@ -215,7 +215,7 @@ class Client:
         labels: Mapping[str, str] | None = None,
         limit: int | None = None,
     ) -> list[Job]:
-        """Your jobs, the newest first.
+        """Your jobs, or those of all users if you are an administrator, the newest first.
 
         Args:
             state: one or several of "queued", "running", "cancelling", "succeeded", "failed",

@@ -9,19 +9,22 @@ import numpy as np
 from ballpiston.errors import NotFound, ResultsExpired
 from ballpiston.job import Job
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
+from ballpiston.result_table import warnings_of
+from ballpiston.spelling import spelled
 from ballpiston.table import Table
 from ballpiston.v1 import ensemble_pb2
 
-_OF_JOB = ("job", "labels", "state", "experiment", "seed", "engine_version")
+_OF_JOB = "job principal labels state experiment seed precision continues engine_version".split()
 _TEXTS = (*_OF_JOB, "cells", "model", "name")
 _COLUMNS = (*_OF_JOB, "index", *PARAMETERS, "model", "samples", "name", "value", *ESTIMATE_FIELDS)
 
 
 def estimates_table(jobs: Iterable[Job]) -> Table:
     """Columns of equal length, NaN or "" where a value is absent: of each job the points that are
-    finished. A note on standard error names each job that has not ended, and each that is left out
-    because its results have expired or it was deleted meanwhile. Raises ResultsExpired, NotFound:
-    every job would be left out."""
+    finished. A job that `continues` another one contains its samples. Notes on standard error name
+    each job that has not ended, each point whose orbits left the cell, and each job that is left
+    out because its results have expired or it was deleted meanwhile. Raises ResultsExpired,
+    NotFound: every job would be left out."""
     columns: dict[str, list[Any]] = {name: [] for name in _COLUMNS}
     left_out: list[ResultsExpired | NotFound] = []
     count = 0
@@ -49,12 +52,17 @@ def _rows(job: Job) -> Iterator[dict[str, Any]]:
         print(f"ballpiston: {job.name} is still {result.state}: {finished}", file=sys.stderr)
     of_job = {
         "job": job.name,
+        "principal": job.message.principal,
         "labels": " ".join(f"{key}={value}" for key, value in sorted(job.labels.items())),
         "state": result.state,
         "experiment": job.experiment,
         "seed": str(job.specification.seed),  # it may have more digits than a float
+        "precision": "single" if spelled(job.specification, "precision") == "single" else "double",
+        "continues": job.continues,
         "engine_version": job.message.engine_version,
     }
+    for warning in warnings_of(result.messages):
+        print(f"ballpiston: {job.name}: {warning}", file=sys.stderr)
     for point in result:
         of_point = {"index": point.index, "model": point.model, "samples": point.message.samples}
         for estimate in point.estimates.values():

@@ -8,6 +8,7 @@ from typing import Any
 from ballpiston.point import Point, measured_text
 
 _MOST_ROWS = 20
+_LOST = "orbits left the cell; this is a defect: do not use the point"
 
 
 def result_text(heading: str, points: Sequence[Any]) -> str:
@@ -60,4 +61,10 @@ def _lines(points: Sequence[Any]) -> list[list[str]]:
 def _ending(points: Sequence[Any]) -> list[str]:
     more = [f"and {len(points) - _MOST_ROWS} more points"] if len(points) > _MOST_ROWS else []
     remarks = dict.fromkeys(remark for point in points for remark in point.remarks)
-    return more + [f"remark: {remark}" for remark in remarks]
+    return more + [f"remark: {remark}" for remark in remarks] + warnings_of(points)
+
+
+def warnings_of(points: Sequence[Any]) -> list[str]:
+    """A sentence for each point whose orbits left the cell."""
+    lost = [point for point in points if point.health.escapes]
+    return [f"warning: point {point.index}: {point.health.escapes:.15g} {_LOST}" for point in lost]

@@ -96,7 +96,8 @@ def test_cancel_by_label_asks_and_takes_no_for_an_answer(home: Home) -> None:
         job = client.submit(**ENDLESS, labels={"run": "endless"})
         words = [home.programs / "ballpiston", "cancel", "--label", "run=endless"]
         asked = subprocess.run(words, input="n\n", capture_output=True, text=True, check=False)
-        assert "cancel 1 job? [y/N]" in asked.stderr and "nothing was changed" in asked.stderr
+        assert "cancel 1 job of local? [y/N]" in asked.stderr
+        assert "nothing was changed" in asked.stderr
         assert not job.has_ended
         assert subprocess.run(words, input="y\n", text=True, check=False).returncode == 0
         assert job.refresh().message.state != ballpiston.v1.ensemble_pb2.EnsembleJob.RUNNING
@@ -112,6 +113,7 @@ def test_an_extended_job_has_the_bytes_of_one_long_run(client: ballpiston.Client
         longer = job.extend(samples=samples)
         assert longer.continues == job.name and longer.message.priority == -1
         extended = longer.watch(progress=False)
+        assert set(ballpiston.estimates_table([longer])["continues"]) == {job.name}
         job = longer
     at_once = client.run("first-hit", **question, samples=50_000, fresh=True, progress=False)
     assert [p.message for p in extended] == [p.message for p in at_once]
@@ -132,6 +134,7 @@ def test_the_estimates_of_many_jobs_are_one_table(
     times = table["value"][table["name"] == "mean_hit_time"]
     assert set(times) == {time for result in results for time in result["mean_hit_time"]}
     assert set(table["seed"]) == {"106", "107"} and set(table["labels"]) == {"run=table"}
+    assert set(table["principal"]) == {"local"} and set(table["precision"]) == {"double"}
 
     for ending in ("csv", "npz"):
         out = tmp_path / f"table.{ending}"
@@ -177,6 +180,23 @@ def test_the_state_in_a_table_is_that_of_its_points(
     earlier = ballpiston.Result(partial, first_hits.messages)
     monkeypatch.setattr(job, "result_in", lambda view: earlier)
     assert set(ballpiston.estimates_table([job])["state"]) == {"running"}
+
+
+def test_lost_orbits_are_a_warning_in_tables(
+    client: ballpiston.Client,
+    first_hits: ballpiston.Result,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    job = client.job(first_hits.job_name)
+    lost = job.result()
+    lost.messages[2].health.escapes = 3
+    job.specification.precision = ballpiston.v1.spec_pb2.EnsembleSpec.SINGLE
+    monkeypatch.setattr(job, "result_in", lambda view: lost)
+    assert set(ballpiston.estimates_table([job])["precision"]) == {"single"}
+    warning = "warning: point 2: 3 orbits left the cell; this is a defect: do not use the point"
+    assert f"{job.name}: {warning}\n" in capsys.readouterr().err
+    assert repr(lost).endswith(f"\n{warning}") and warning in lost._repr_html_()
 
 
 def test_the_estimates_of_a_running_job_have_a_note(

@@ -283,7 +283,7 @@ TEST_F(AcceptanceTest, AStoredAnswerKeepsItsLabelsAndIsUsedOnlyIfTheyFit) {
   EXPECT_THAT(Get(first).labels(), ElementsAre(Pair("run", "1")));
   EXPECT_EQ(Id(kAnn, run("1")), first);
   EXPECT_EQ(Id(kAnn, run("2")), second);
-  EXPECT_EQ(Id(kAnn, CreateRequest(Question())), first);
+  EXPECT_EQ(Id(kAnn, CreateRequest(Question())), second);
   // Every question is permitted, whatever labels were given to the jobs before.
   v1::CreateEnsembleJobRequest many = CreateRequest(Question());
   for (size_t i = 0; i < kMostLabels; ++i) many = Labelled(many, std::to_string(i), "x");

@@ -61,14 +61,15 @@ TEST_F(StoreTest, AJobIsThereAfterReopening) {
 
 // Jobs with different labels can have one question. The search is bounded, because other writes
 // wait for it.
-TEST_F(StoreTest, AnAnswerIsSearchedAmongTheOldestJobs) {
+TEST_F(StoreTest, AnAnswerIsSearchedAmongTheNewestJobs) {
   const auto store = Open();
   ASSERT_OK(store->Commit([](Database& database) {
     for (int i = 0; i <= kMostAnswers; ++i) {
       JobRecord record = Record(std::to_string(i));
       record.question = "question";
+      record.job.set_pinned(i == 7);
       InsertJob(database, record);
-      EndJob(database, record.sequence, JobEnd());
+      EndJob(database, record.sequence, {.time = absl::FromUnixSeconds(i)});
     }
   }));
   int asked = 0;
@@ -79,7 +80,8 @@ TEST_F(StoreTest, AnAnswerIsSearchedAmongTheOldestJobs) {
                         [&](const EnsembleJob&) { return ++asked == accepted; });
     });
   };
-  EXPECT_EQ(find(2)->job.DebugString(), Find(*store, "1")->job.DebugString());
+  EXPECT_EQ(find(1)->job.DebugString(), Find(*store, "7")->job.DebugString());
+  EXPECT_EQ(find(2)->id, std::to_string(kMostAnswers));
   EXPECT_FALSE(find(kMostAnswers + 1));
   EXPECT_EQ(asked, kMostAnswers);
 }
