@@ -4,7 +4,8 @@
 #   scripts/oci.sh PACKAGES IMAGE     for instance scripts/oci.sh build/deb build/oci
 #
 # The image has Debian's smallest system and the packages ballpiston and ballpistond. Its command is
-# the server, as the user ballpiston, with its data in /var/lib/ballpiston.
+# the server, as the user ballpiston (by number, as Kubernetes wants it), with its data in
+# /var/lib/ballpiston/ballpiston, where clients in the container find it.
 set -euo pipefail
 packages=$(realpath "$1")
 image=$(realpath -m "$2")
@@ -29,11 +30,13 @@ if [[ -e $image && ! -e $image/oci-layout ]]; then
   exit 1
 fi
 rm -rf "$image"
+user=$(tar --extract --to-stdout --file "$work/system.tar" ./etc/passwd |
+  awk -F: '$1 == "ballpiston" { print $3 ":" $4 }')
 umoci init --layout "$image"
 umoci new --image "$image:$version"
 umoci raw add-layer --image "$image:$version" "$work/system.tar"
 umoci config --image "$image:$version" \
-  --config.user ballpiston --config.env XDG_STATE_HOME=/var/lib/ballpiston \
+  --config.user "$user" --config.env XDG_STATE_HOME=/var/lib/ballpiston \
   --config.volume /var/lib/ballpiston --config.stopsignal SIGTERM \
-  --config.cmd ballpistond --config.cmd --data-dir=/var/lib/ballpiston/server
+  --config.cmd ballpistond
 echo "$image, tag $version"

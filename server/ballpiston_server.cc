@@ -120,7 +120,7 @@ std::string IdentityOf(const Store& store, const DataDirectory& directory) {
 }
 
 absl::Status CannotListen(const ListenAddress& address) {
-  return absl::FailedPreconditionError(absl::StrCat(
+  return absl::UnavailableError(absl::StrCat(
       "--listen=", address.Text(),
       ": the address is in use, not permitted, or not of this machine; choose another address, "
       "unix:PATH or HOST:PORT"));

@@ -20,7 +20,8 @@ namespace ballpiston::server {
 absl::Status PrepareFolder(const std::string& folder, const std::string& identity);
 
 // Copies the program into the folder, unless there is a copy with the same bytes. `worker` empty:
-// the program that is installed with this server. Workers that run keep the program that they have.
+// the program that is installed with this server. Workers that run keep the program that they have;
+// on NFS some may end by SIGBUS.
 absl::Status CopyWorker(const std::string& folder, const std::string& worker);
 
 }  // namespace ballpiston::server

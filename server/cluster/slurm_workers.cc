@@ -80,13 +80,11 @@ std::string WithoutSlurmsVariables() {
   std::string line = "env";
   for (char** variable = environ; *variable != nullptr; ++variable) {
     const absl::string_view text = *variable;
-    const bool is_slurms =
-        absl::StartsWith(text, "SLURM_") && !absl::StartsWith(text, "SLURM_CONF=");
-    const bool changes_tools = absl::StartsWith(text, "SBATCH_") ||
-                               absl::StartsWith(text, "SQUEUE_") ||
-                               absl::StartsWith(text, "SCANCEL_");
     const absl::string_view name = text.substr(0, text.find('='));
-    if (is_slurms || changes_tools) absl::StrAppend(&line, " -u ", Quoted(name));
+    if (name == "SLURM_CONF" || name == "SLURM_JWT") continue;  // where Slurm is; a token for it
+    for (const absl::string_view prefix : {"SLURM_", "SBATCH_", "SQUEUE_", "SCANCEL_"}) {
+      if (absl::StartsWith(name, prefix)) absl::StrAppend(&line, " -u ", Quoted(name));
+    }
   }
   return line;
 }
@@ -258,6 +256,7 @@ absl::Status SlurmWorkers::Steer(const FolderStatus& work) {
   }
   if (has_ended && found > 0) {
     trial_.reset();
+    submitted_ = 0;
     return tools_->Cancel(true);
   }
   const bool is_tried = !fault_.ok() && trial_;
@@ -275,7 +274,10 @@ absl::Status SlurmWorkers::Judge(const FolderStatus& work, const SlurmQueue& que
   }
   const size_t found = queue.waiting + queue.running;
   const bool took_leases = trial_ && work.claims > *trial_;
-  if (trial_ && !took_leases && found == 0 && work.waiting_leases > 0) {
+  const double accounted = work.claims + static_cast<double>(found);
+  const bool some_failed = accounted < submitted_ && work.waiting_leases > 0;
+  submitted_ = std::clamp(submitted_, work.claims + static_cast<double>(queue.waiting), accounted);
+  if (some_failed) {
     return Fails(
         "workers have ended without taking a lease; their messages are in the folder's log/");
   }
@@ -286,6 +288,7 @@ absl::Status SlurmWorkers::Judge(const FolderStatus& work, const SlurmQueue& que
 
 absl::Status SlurmWorkers::Fails(const std::string& why) {
   trial_.reset();
+  submitted_ = 0;
   step_ = 1;
   return fault_ = absl::UnavailableError(why);
 }
@@ -313,6 +316,7 @@ absl::Status SlurmWorkers::SubmitArrays(size_t missing) {
     may_have_workers_ = true;
     if (!submitted.ok()) return submitted;
     Failpoint("cluster.submitted");
+    submitted_ += static_cast<double>(workers);
     missing -= workers;
   }
   return absl::OkStatus();

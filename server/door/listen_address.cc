@@ -87,7 +87,7 @@ absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text) {
 absl::Status CheckSocketIsFree(const ListenAddress& address) {
   const int error = ErrorOfConnecting(address.socket_path);
   if (error == ENOENT || error == ECONNREFUSED) return absl::OkStatus();
-  return absl::FailedPreconditionError(
+  return absl::UnavailableError(
       absl::StrCat("--listen=", address.Text(),
                    ": a server is listening there (stop it), or the path cannot be used (",
                    std::strerror(error == 0 ? EADDRINUSE : error), "); choose another path"));

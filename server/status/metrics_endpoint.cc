@@ -37,7 +37,7 @@ absl::StatusOr<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Start(const st
   try {
     return std::unique_ptr<MetricsEndpoint>(new MetricsEndpoint(address, std::move(source)));
   } catch (const std::exception&) {
-    return absl::FailedPreconditionError(
+    return absl::UnavailableError(
         absl::StrCat("--metrics-listen=", address,
                      ": cannot listen there (in use, or not permitted); choose another address"));
   }

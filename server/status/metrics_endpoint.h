@@ -27,8 +27,8 @@ class MetricsEndpoint {
   using Source = std::function<std::vector<prometheus::MetricFamily>()>;
 
   // `address` is HOST:PORT on the loopback, with a numeric HOST; port 0: any free port. A thread of
-  // the HTTP server calls `source` for each request, one thread at a time. FAILED_PRECONDITION if
-  // the server cannot listen at the address.
+  // the HTTP server calls `source` for each request, one thread at a time. UNAVAILABLE if the
+  // server cannot listen at the address.
   // The destructor takes up to 2 s, because the HTTP server checks only every 2 s whether it should
   // stop.
   static absl::StatusOr<std::unique_ptr<MetricsEndpoint>> Start(const std::string& address,

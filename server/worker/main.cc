@@ -109,7 +109,10 @@ class Ending {
 std::array<char, PATH_MAX> file_of_lease = {};  // empty: none
 std::array<char, PATH_MAX> file_after_crash = {};
 
-void MoveFileOfLease(int) { rename(file_of_lease.data(), file_after_crash.data()); }
+// SIGBUS does not prove a crash: on NFS it comes when the server has replaced the program's file.
+void MoveFileOfLease(int signal) {
+  if (signal != SIGBUS) rename(file_of_lease.data(), file_after_crash.data());
+}
 
 void SetPath(const std::string& path, std::array<char, PATH_MAX>& text) {
   text = {};

@@ -281,6 +281,7 @@ TEST_F(FolderExecutorTest, ThreadsCanTakeReturnedLeasesFirst) {
   executor_->Look();
   executor_->Look();
   EXPECT_THAT(In("todo"), IsEmpty());
+  EXPECT_EQ(executor_->Status().waiting_leases, 1);  // or Slurm's workers would be cancelled
   local_->TakeAllTurns();
   ASSERT_TRUE(journal->outcome);
   EXPECT_OK(*journal->outcome);

@@ -64,6 +64,7 @@ TEST_F(SlurmWorkersTest, AsManyWorkersAreSubmittedAsThereAreLeases) {
   work_ = {.waiting_leases = 3, .taken_leases = 2};
   workers.Look();
   slurm_.queue = {.waiting = 1, .running = 2};
+  work_.claims = 2;
   workers.Look();
   slurm_.queue = {.waiting = 0, .running = 5};
   workers.Look();
@@ -155,8 +156,10 @@ TEST_F(SlurmWorkersTest, ARefusedNumberIsHalvedAndAnAcceptedOneDoubled) {
   for (int i = 0; i < 3; ++i) workers.Look();
   slurm_.queue = {.waiting = 0, .running = 10};
   slurm_.room = 1'000'000;
-  work_.claims = 10;
-  for (int i = 0; i < 2; ++i) workers.Look();
+  for (int i = 0; i < 2; ++i) {
+    work_.claims += 20;
+    workers.Look();
+  }
   EXPECT_THAT(slurm_.submitted, ElementsAre(40, 20, 10, 20, 30));
 }
 
@@ -186,7 +189,15 @@ TEST_F(SlurmWorkersTest, WorkersThatFailAreTriedOneByOne) {
                       {{.waiting = 1}, 3, "for ever: PartitionTimeLimit", {}, 0},
                       {{.running = 1}, 4, "", {2}, 0},
                       {never, 4, "for ever: PartitionTimeLimit", {}, 1},
-                      {{.running = 5}, 4, "", {}, 0}};
+                      {{.running = 5}, 4, "", {}, 0},
+                      // Five run on, and all others end at once.
+                      {{.running = 5}, 4, "", {1}, 0, 10},
+                      {{.running = 5}, 4, "", {2}, 0, 10},
+                      {{.running = 5}, 4, "", {4}, 0, 10},
+                      {{.running = 5}, 4, "without taking a lease", {}, 0, 10},
+                      {{.running = 5}, 4, "without taking a lease", {1}, 0, 10},
+                      {{.running = 6}, 9, "", {2}, 0, 10},
+                      {{}, 11, "", {4}, 0, 10}};  // each had taken a lease
   SlurmWorkers workers = New();
   for (const Row& row : rows) {
     SCOPED_TRACE(&row - rows);
@@ -232,14 +243,15 @@ TEST_F(SlurmToolsTest, EachWordArrivesAsItIs) {
 
 TEST_F(SlurmToolsTest, VariablesThatChangeTheToolsAreRemoved) {
   Install("sbatch", "env >\"${0%/*}/variables\"");
-  const ScopedVariable conf("SLURM_CONF", "/conf"), job("SLURM_JOB_ID", "7"),
-      partition("SBATCH_PARTITION", "late"), format("SQUEUE_FORMAT", "%A"),
-      cancel("SCANCEL_USER", "me");
+  const ScopedVariable conf("SLURM_CONF", "/conf"), token("SLURM_JWT", "t"),
+      job("SLURM_JOB_ID", "7"), partition("SBATCH_PARTITION", "late"),
+      format("SQUEUE_FORMAT", "%A"), cancel("SCANCEL_USER", "me");
   EXPECT_OK(New().Submit(1));
   const std::vector<std::string> variables =
       absl::StrSplit(Contents(folder_.File("variables")), '\n');
-  EXPECT_THAT(variables, Contains("SLURM_CONF=/conf"));
-  EXPECT_THAT(variables, Not(Contains(testing::ContainsRegex("^(SLURM_J|SBATCH|SQUEUE|SCANCEL)"))));
+  EXPECT_THAT(variables, testing::IsSupersetOf({"SLURM_CONF=/conf", "SLURM_JWT=t"}));
+  EXPECT_THAT(variables,
+              Not(Contains(testing::ContainsRegex("^(SLURM_JOB|SBATCH|SQUEUE|SCANCEL)"))));
 }
 
 TEST_F(SlurmToolsTest, TheQueueIsReadAndWarningsAreNot) {

@@ -1,4 +1,6 @@
 // The program ballpiston-worker.
+#include <sys/syscall.h>
+
 #include "core/engine_version.h"
 #include "core/experiment/all_experiments.h"
 #include "core/gas/gas_shape.h"
@@ -72,6 +74,21 @@ TEST_F(WorkerProgramTest, ACrashMovesTheLeaseThatWasComputed) {
   // A sanitizer reports the signal and exits with a code of its own.
   EXPECT_THAT(RunProgram(command), testing::Not(ExitsWith(0)));
   EXPECT_THAT(Done(), ElementsAre("a.crashed"));
+}
+
+// On NFS a worker dies of SIGBUS when its program is replaced. The test sends the signal in the
+// name of the worker.
+TEST_F(WorkerProgramTest, ABusErrorLeavesTheLeaseInItsPlace) {
+  Lay("a", LeaseOf(SpecOf(kEquilibrium, Model::kBilliardReference, 5'000'000)), 1e-9);
+  const size_t bytes = LargestIn("todo");
+  Process worker(Command());
+  AwaitThat([&] { return LargestIn("taken") > bytes; });
+  siginfo_t info{};
+  info.si_code = SI_QUEUE;
+  info.si_pid = worker.pid();
+  ASSERT_EQ(syscall(SYS_rt_sigqueueinfo, worker.pid(), SIGBUS, &info), 0);
+  EXPECT_THAT(worker.Wait(), testing::Not(ExitsWith(0)));
+  EXPECT_THAT(Done(), IsEmpty());
 }
 
 // Slurm says MiB. Lanes of a gas of 1000 x 1000 cells take some 700 MB.
