@@ -69,7 +69,8 @@ TEST_F(StoreTest, AnAnswerIsSearchedAmongTheNewestJobs) {
       record.question = "question";
       record.job.set_pinned(i == 7);
       InsertJob(database, record);
-      EndJob(database, record.sequence, {.time = absl::FromUnixSeconds(i)});
+      const absl::Time end = absl::FromUnixSeconds(i);
+      EndJob(database, record.sequence, {.time = end, .error = {}, .numbers = {}});
     }
   }));
   int asked = 0;
