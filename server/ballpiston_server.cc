@@ -14,6 +14,7 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
+#include "server/convert/errors.h"
 #include "server/rpc/builtin_streams.h"
 #include "server/rpc/server_status.h"
 #include "server/status/failpoint.h"
@@ -132,6 +133,7 @@ absl::Status CannotListen(const ListenAddress& address) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(ServerOptions options) {
+  ShuttingDown().IgnoreError();  // builds descriptors that an error may have no memory for
   absl::StatusOr<DataDirectory> directory = DataDirectory::Open(options.data_dir);
   if (!directory.ok()) return directory.status();
   if (options.listen.empty()) {
