@@ -9,10 +9,12 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
+#include "grpc/grpc.h"
 #include "grpcpp/ext/proto_server_reflection_plugin.h"
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
+#include "server/convert/errors.h"
 #include "server/rpc/builtin_streams.h"
 #include "server/rpc/server_status.h"
 #include "server/status/failpoint.h"
@@ -32,8 +34,10 @@ constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may wa
 constexpr int kOtherThreads = 4'096;
 constexpr size_t kTransferBytes = size_t{512} << 20;  // connections, and requests that arrive
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
-// The longest delay until health reports that the store fails, and until a revoked watch ends.
-constexpr std::chrono::milliseconds kHealthInterval(500);
+// The longest delay until health reports that the store fails, and until a revoked watch or, at a
+// stop, a connection without calls ends.
+constexpr std::chrono::milliseconds kHealthInterval(200);
+constexpr std::chrono::milliseconds kLateCalls(100);  // may still arrive when a stop begins
 
 // Seconds of one core of a lease of the threads. Without a cluster they take all chunks of a point
 // at once, which keeps their lanes full.
@@ -129,6 +133,7 @@ absl::Status CannotListen(const ListenAddress& address) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(ServerOptions options) {
+  ShuttingDown().IgnoreError();  // builds descriptors that an error may have no memory for
   absl::StatusOr<DataDirectory> directory = DataDirectory::Open(options.data_dir);
   if (!directory.ok()) return directory.status();
   if (options.listen.empty()) {
@@ -193,7 +198,6 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                ladder_,
                quotas_,
                streams_,
-               activity_,
                draining_,
                RandomId(),
                options_.watch,
@@ -249,6 +253,9 @@ void BallpistonServer::StartHealth() {
   looking_ =
       std::make_unique<PeriodicThread>(kHealthInterval, [this, health, served = true]() mutable {
         streams_.EndRevoked();
+        // gRPC would also wait for health watches and for clients that do nothing.
+        const bool is_quiet = stopping_ && calls_.activity().IdleFor() >= kLateCalls;
+        if (is_quiet) grpc_server_cancel_all_calls(grpc_->c_server());
         const bool serves = !store_->failing() && !store_->stalled();
         if (std::exchange(served, serves) == serves) return;
         health->SetServingStatus(ServiceNames().front(), serves);
@@ -269,8 +276,8 @@ absl::Status BallpistonServer::StartMetrics() {
 }
 
 std::chrono::steady_clock::duration BallpistonServer::IdleFor() {
-  if (book_.active_jobs() == 0) return activity_.IdleFor();
-  activity_.Touch();
+  if (book_.active_jobs() == 0) return calls_.activity().IdleFor();
+  calls_.activity().Touch();
   return std::chrono::steady_clock::duration::zero();
 }
 
@@ -283,6 +290,8 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   limits_.reset();
   Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
+  calls_.activity().Touch();
+  stopping_ = true;
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
   door_->Close();
   if (metrics_ != nullptr) metrics_->Detach();

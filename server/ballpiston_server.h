@@ -90,7 +90,8 @@ class BallpistonServer {
   absl::Status StartMetrics();
   // While the disk rejects writes, the service that needs it is NOT_SERVING, so that clients can
   // choose another server. The other services and the whole server stay SERVING, because a restart
-  // would not repair the disk.
+  // would not repair the disk. The same thread calls Streams::EndRevoked and, at a stop, ends the
+  // connections when no call is in progress.
   void StartHealth();
 
   const ServerOptions options_;
@@ -99,7 +100,7 @@ class BallpistonServer {
   std::unique_ptr<Door> door_;
   std::atomic<bool> draining_ = false;
   bool shut_down_ = false;
-  Activity activity_;
+  std::atomic<bool> stopping_ = false;  // gRPC takes no more calls
   CallObserver calls_;
   std::unique_ptr<Store> store_;
   std::shared_ptr<CrashRecord> crashes_;
@@ -119,7 +120,7 @@ class BallpistonServer {
   ServerService server_;
   std::unique_ptr<grpc::Server> grpc_;
   std::unique_ptr<PeriodicThread> limits_;    // calls JobBook::KeepLimits
-  std::unique_ptr<PeriodicThread> looking_;   // sets health; calls Streams::EndRevoked
+  std::unique_ptr<PeriodicThread> looking_;   // sets health; ends streams and connections
   std::unique_ptr<MetricsEndpoint> metrics_;  // last: it reads all members above
 };
 

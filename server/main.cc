@@ -3,12 +3,14 @@
 #include <signal.h>
 #include <sys/resource.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include "absl/status/status.h"
@@ -93,11 +95,15 @@ int ExitCode() { return has_stopped_listening ? kExitTryAgain : 0; }
 
 // Ends the process after this time. Everything that was acknowledged is on disk by then.
 void ExitAfter(std::chrono::milliseconds limit, const BallpistonServer& server) {
-  std::thread([limit, &server] {
-    std::this_thread::sleep_for(limit);
-    server.LeaveDataFolder();
-    std::_Exit(ExitCode());
-  }).detach();
+  try {
+    std::thread([limit, &server] {
+      std::this_thread::sleep_for(limit);
+      server.LeaveDataFolder();
+      std::_Exit(ExitCode());
+    }).detach();
+  } catch (const std::system_error&) {  // no thread is left: SIGALRM ends the process
+    alarm(static_cast<unsigned>(limit / std::chrono::seconds(1)) + 1);
+  }
 }
 
 int Fail(const absl::Status& status) {

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <system_error>
 #include <utility>
 
 #include "client/command/exit_code.h"
@@ -57,10 +58,14 @@ void Interrupts::Listen() {
   }
   if (files[0].revents == 0) return;
   // A stopped terminal (Ctrl-S) or a full pipe must not keep the program from ending.
-  std::thread([] {
-    std::this_thread::sleep_for(kLongestFarewell);
-    EndProgram();
-  }).detach();
+  try {
+    std::thread([] {
+      std::this_thread::sleep_for(kLongestFarewell);
+      EndProgram();
+    }).detach();
+  } catch (const std::system_error&) {
+    alarm(1);  // no thread is left: SIGALRM ends the program
+  }
   const std::lock_guard lock(mutex_);
   if (farewell_ != nullptr) (*farewell_)();
   EndProgram();

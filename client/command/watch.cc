@@ -1,9 +1,11 @@
 // ballpiston watch: shows the progress of a job until it ends, or waits for several jobs.
 #include <algorithm>
+#include <atomic>
 #include <mutex>
 #include <stop_token>
 #include <thread>
 
+#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
 #include "client/command/follow_job.h"
@@ -15,6 +17,9 @@ namespace ballpiston::client {
 namespace {
 
 using Ended = absl::StatusOr<v1::EnsembleJob>;
+
+// At the same time. By default a server permits a principal no more.
+constexpr size_t kMostWatches = 1'024;
 
 VerbResult RunCommand(const v1::EnsembleJob& job, const Options& options) {
   if (options.command.empty()) return ExitCode::kDone;
@@ -35,8 +40,8 @@ VerbResult Finish(const Ended& job, const Options& options, const Terminal& term
   return ReportEnd(*job, terminal);
 }
 
-// Watches each job on a thread of its own, and prints its name and state when it ends. With --any
-// the first one ends the other watches.
+// Watches each job on a thread, and prints its name and state when it ends. With --any the first
+// one ends the other watches.
 VerbResult WatchSeveral(const Connection& connection, const std::vector<v1::EnsembleJob>& jobs,
                         const Options& options, Terminal& terminal) {
   std::mutex mutex;  // one job at a time is reported
@@ -56,8 +61,14 @@ VerbResult WatchSeveral(const Connection& connection, const std::vector<v1::Ense
     first_error.Update(result.status());
     if (result.ok()) worst = std::max(worst, *result);
   };
+  std::atomic<size_t> next = 0;
+  const auto watch_some = [&] {
+    for (size_t i = next++; i < jobs.size(); i = next++) watch(jobs[i].name());
+  };
+  const size_t most = options.any ? jobs.size() : std::min(jobs.size(), kMostWatches);
   std::vector<std::jthread> threads;
-  for (const v1::EnsembleJob& job : jobs) threads.emplace_back(watch, job.name());
+  const absl::Cleanup end = [&] { enough.request_stop(); };  // also if a thread cannot start
+  while (next < jobs.size() && threads.size() < most) threads.emplace_back(watch_some);
   threads.clear();  // waits for them
   return first_error.ok() ? VerbResult(worst) : first_error;
 }

@@ -320,18 +320,23 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
       checked = open->DropImpossible(report.chunks);
       report.partial = {};
     }
-    const uint64_t samples = run->Merge(lease, *open, std::move(report));
-    samples_.fetch_add(static_cast<double>(samples), std::memory_order_relaxed);
+    absl::Status merged = Guarded(lease.point, [&] {
+      const uint64_t samples = run->Merge(lease, *open, std::move(report));
+      samples_.fetch_add(static_cast<double>(samples), std::memory_order_relaxed);
+      return absl::OkStatus();
+    });
     is_finished = open->fold().finished();
     if (is_finished) {
       open->RequestStop();
-      dropped = DropStoppedLeases(*run);
       run->TurnBegins();  // so that the run does not end before its point
     }
+    if (!merged.ok()) run->Stop(std::move(merged));
+    if (is_finished || run->stopped()) dropped = DropStoppedLeases(*run);
   }
   if (is_finished) FinishPoint(run, lease);
   if (lease.local) return checked;  // the executor wakes the others when its turn ends
   if (!is_finished) Wake();
+  Conclude(run);
   EndSuspicionIfDue(run);
   run->journal().AwaitRoom();
   return checked;

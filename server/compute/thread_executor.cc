@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <deque>
+#include <optional>
 #include <stop_token>
 #include <utility>
 
@@ -171,28 +172,31 @@ void ThreadExecutor::Work() {
 
 void ThreadExecutor::TakeTurn(const Lease& lease) {
   busy_.fetch_add(1, std::memory_order_relaxed);
+  std::optional<CrashRecord::Entry> failed;
   const double start = ProcessorSeconds();
-  Compute(lease);
+  Compute(lease, failed);
   const double seconds = ProcessorSeconds() - start;
   busy_.fetch_sub(1, std::memory_order_relaxed);
   scheduler_.EndTurn(lease, seconds);
 }
 
-// The record has the point only here, not while EndTurn waits for the disk.
-void ThreadExecutor::Compute(const Lease& lease) {
+// The record has the point only here, not while EndTurn waits for the disk; if the turn fails,
+// until EndTurn has reported this, which takes memory.
+void ThreadExecutor::Compute(const Lease& lease, std::optional<CrashRecord::Entry>& computing) {
   const RunName run = {lease.run, lease.generation};
   for (const size_t point : lease.opens) {
     const CrashRecord::Entry opening(*crashes_, run, point);
     scheduler_.Open(lease, point);
   }
   if (lease.OpensPoints()) return;
-  const CrashRecord::Entry computing(*crashes_, run, lease.point);
+  computing.emplace(*crashes_, run, lease.point);
   CrashForSeed(lease.spec->seed);
   const absl::Status advanced = Guarded(lease.point, [&] {
     static_cast<SharedLease&>(*lease.work).Advance();
     return absl::OkStatus();
   });
-  if (!advanced.ok()) scheduler_.Stop(lease.run, advanced);
+  if (!advanced.ok()) return scheduler_.Stop(lease.run, advanced);
+  computing.reset();
 }
 
 }  // namespace ballpiston::server

@@ -42,7 +42,7 @@ class ThreadExecutor {
 
   void Work();
   void TakeTurn(const Lease& lease);
-  void Compute(const Lease& lease);
+  void Compute(const Lease& lease, std::optional<CrashRecord::Entry>& computing);
 
   Scheduler& scheduler_;
   const int workers_;

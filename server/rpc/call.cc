@@ -56,7 +56,6 @@ void LogDone(const Call& call, const char* what, const std::string& job,
 
 grpc::Status ServeCall(ServiceContext& service, grpc::ServerContext& context, const CallRule& rule,
                        absl::FunctionRef<absl::Status(const Call&)> method) {
-  const auto active = service.activity.Begin();
   const absl::Time begin = absl::Now();
   Call call = {.method = rule.method, .caller = {}, .is_abandoned = [&context] {
                  return context.IsCancelled();

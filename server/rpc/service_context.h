@@ -16,7 +16,6 @@
 #include "server/rpc/quota.h"
 #include "server/rpc/streams.h"
 #include "server/rpc/watch.h"
-#include "server/status/activity.h"
 #include "server/status/call_observer.h"
 #include "server/store/store.h"
 
@@ -33,7 +32,6 @@ struct ServiceContext {
   ModelLadder& ladder;
   Quotas& quotas;
   Streams& streams;
-  Activity& activity;
   const std::atomic<bool>& draining;
   std::string instance;  // of this server process, which numbers the changes
   WatchTiming timing;

@@ -22,8 +22,8 @@ class Streams {
           const std::atomic<bool>& draining)
       : authenticator_(authenticator), heartbeat_(heartbeat), draining_(draining) {}
 
-  // Ends the streams whose readers stall and whose credentials are no longer valid. Call about
-  // twice a second.
+  // Ends the streams whose readers stall and whose credentials are no longer valid. Call a few
+  // times a second.
   void EndRevoked();
 
  private:

@@ -3,7 +3,6 @@
 
 #include <chrono>
 
-#include "absl/cleanup/cleanup.h"
 #include "server/mutex.h"
 
 namespace ballpiston::server {
@@ -12,11 +11,9 @@ class Activity {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // A call is in progress as long as the returned object lives.
-  [[nodiscard]] auto Begin() {
-    Add(1);
-    return absl::MakeCleanup([this] { Add(-1); });
-  }
+  // A call is in progress from Begin to End.
+  void Begin() { Add(1); }
+  void End() { Add(-1); }
 
   // Resets the idle time, for an event that is not a call.
   void Touch() { Add(0); }

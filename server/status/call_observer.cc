@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
@@ -90,12 +91,15 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
   Interceptor(CallObserver& observer, ServerRpcInfo& info)
       : observer_(observer),
         call_(*info.server_context()),
-        method_(LabelsOf(info.method(), static_cast<size_t>(info.type()))) {
+        method_(LabelsOf(info.method(), static_cast<size_t>(info.type()))),
+        is_of_api_(absl::StartsWith(info.method(), "/ballpiston.")) {
     observer_.began_.Add(method_).Increment();
+    if (is_of_api_) observer_.activity_.Begin();
   }
 
   ~Interceptor() override {
-    Ended(absl::StatusCode::kCancelled);        // if no status was sent
+    Ended(absl::StatusCode::kCancelled);  // if no status was sent
+    if (is_of_api_) observer_.activity_.End();
     decltype(observer_.kept_)::node_type kept;  // is released after the mutex
     MutexLock lock(observer_.mutex_);
     kept = observer_.kept_.extract(&call_);
@@ -124,6 +128,7 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
   CallObserver& observer_;
   const grpc::ServerContextBase& call_;
   const Labels method_;
+  const bool is_of_api_;
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   bool ended_ = false;
 };

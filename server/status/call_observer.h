@@ -23,6 +23,7 @@
 #include "prometheus/histogram.h"
 #include "prometheus/registry.h"
 #include "server/mutex.h"
+#include "server/status/activity.h"
 
 namespace ballpiston::server {
 
@@ -62,6 +63,9 @@ class CallObserver {
 
   const prometheus::Collectable& metrics() const { return registry_; }
 
+  // Of the API. A call is in progress until gRPC has sent its answer.
+  Activity& activity() { return activity_; }
+
  private:
   class Interceptor;
   class Factory;
@@ -82,6 +86,7 @@ class CallObserver {
   prometheus::Family<prometheus::Counter>& not_let_in_;      // by reason
   prometheus::Family<prometheus::Counter>& limits_reached_;  // by reason
 
+  Activity activity_;
   Mutex mutex_;
   Lines refused_ ABSL_GUARDED_BY(mutex_);
   Lines failed_ ABSL_GUARDED_BY(mutex_);

@@ -133,14 +133,14 @@ void Store::Post(Write write, bool soon) {
   {
     MutexLock lock(mutex_);
     if (!closing_) {
-      const bool is_request = write.IsRequest();
-      requests_ += is_request ? 1 : 0;
-      bytes_ += write.bytes;
-      waiting_.push_back(std::move(write));
-      const Clock::duration delay = soon ? Clock::duration::zero() : DelayOf(waiting_.back());
+      waiting_.push_back(std::move(write));  // first: without memory it throws
+      const Write& added = waiting_.back();
+      requests_ += added.IsRequest() ? 1 : 0;
+      bytes_ += added.bytes;
+      const Clock::duration delay = soon ? Clock::duration::zero() : DelayOf(added);
       const Clock::time_point due = std::min(due_, SteadyNow() + delay);
       // The store's thread knows already when the other writes are due.
-      if (std::exchange(due_, due) != due || is_request) posted_.NotifyOne();
+      if (std::exchange(due_, due) != due || added.IsRequest()) posted_.NotifyOne();
       return;
     }
   }

@@ -63,6 +63,22 @@ TEST(InterruptsDeathTest, TheProgramEndsDuringAHangingFarewell) {
   });
 }
 
+// No thread can start, because no stack is so large.
+TEST(InterruptsDeathTest, TheProgramEndsWhenNoThreadIsLeft) {
+  ExpectInterrupted(
+      [] {
+        Interrupts interrupts;
+        const Interrupts::Scope scope(&interrupts, [] { std::cerr << "farewell"; });
+        pthread_attr_t attributes;
+        pthread_attr_init(&attributes);
+        pthread_attr_setstacksize(&attributes, size_t{1} << 60);
+        pthread_setattr_default_np(&attributes);
+        Send(SIGINT);
+        SleepForEver();
+      },
+      HasSubstr("farewell"));
+}
+
 TEST(InterruptsDeathTest, NoPartOfAFileIsLeft) {
   const DeathTestFolder folder;
   ExpectInterrupted([&] {

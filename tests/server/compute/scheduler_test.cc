@@ -403,6 +403,15 @@ TEST_F(ElsewhereTest, AStoppedRunEndsWhenItsTurnsHaveEnded) {
   EXPECT_EQ(journal->ends, 1);
 }
 
+TEST_F(ElsewhereTest, AReportThatFailsEndsItsRun) {
+  const auto journal = Begin(SixChunks());
+  const auto lease = remote_.Take();
+  ASSERT_TRUE(lease);
+  journal->has_no_memory = true;
+  EXPECT_OK(remote_.ReportAll(*lease));
+  EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kResourceExhausted));
+}
+
 // An earlier process gave the lease, and another job has the key now.
 TEST_F(ElsewhereTest, ReportsOfAnotherJobWithTheSameKeyAreDropped) {
   const auto journal = Begin(SixChunks());

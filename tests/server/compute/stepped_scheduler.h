@@ -29,6 +29,7 @@ class RecordingJournal : public RunJournal {
 
   uint64_t Merged(const MergedSamples& news) override {
     std::lock_guard lock(mutex);
+    if (has_no_memory) throw std::bad_alloc();
     (news.restored ? restored : merged)[news.point] += news.samples;
     return ++changes;
   }
@@ -71,6 +72,7 @@ class RecordingJournal : public RunJournal {
   std::map<size_t, FoldState> stored;  // set before the run: what an earlier process stored
   int unreadable = 0;                  // the first reads of points that fail
   std::function<double()> await_room = [] { return 0; };
+  bool has_no_memory = false;  // to merge
   std::mutex mutex;
   std::condition_variable changed;
   int ends = 0;

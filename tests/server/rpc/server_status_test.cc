@@ -45,7 +45,6 @@ class ServerStatusTest : public testing::Test {
       2, FakeExperiments([this](size_t, uint64_t, std::stop_token stop) { gate_.Pass(stop); })};
   JobBook book_{*store_, limits_, pool_.scheduler()};
   Quotas quotas_{limits_};
-  Activity activity_;
   std::atomic<bool> draining_ = false;
   Streams streams_{authenticator_, std::chrono::seconds(10), draining_};
   CallObserver calls_;
@@ -58,7 +57,6 @@ class ServerStatusTest : public testing::Test {
                           .ladder = ladder_,
                           .quotas = quotas_,
                           .streams = streams_,
-                          .activity = activity_,
                           .draining = draining_,
                           .instance = "test",
                           .timing = {},
