@@ -4,8 +4,9 @@
 #   scripts/oci.sh PACKAGES IMAGE     for instance scripts/oci.sh build/deb build/oci
 #
 # The image has Debian's smallest system and the packages ballpiston and ballpistond. Its command is
-# the server, as the user ballpiston (by number, as Kubernetes wants it), with its data in
-# /var/lib/ballpiston/ballpiston, where clients in the container find it.
+# the server, as the user ballpiston, with its data in /var/lib/ballpiston/ballpiston, where clients
+# in the container find it. The user is given by number: from a name Kubernetes cannot tell whether
+# it is root.
 set -euo pipefail
 packages=$(realpath "$1")
 image=$(realpath -m "$2")

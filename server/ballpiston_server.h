@@ -54,7 +54,7 @@ class BallpistonServer {
   // Resumes unfinished jobs. The server answers calls when this returns.
   //   INVALID_ARGUMENT     an option is invalid; the message names its flag
   //   FAILED_PRECONDITION  data folder in use, or the store cannot be read
-  //   UNAVAILABLE          address in use, or the disk fails
+  //   UNAVAILABLE          an address cannot be used, or the disk fails
   //   PERMISSION_DENIED    data folder not writable
   static absl::StatusOr<std::unique_ptr<BallpistonServer>> Start(ServerOptions options);
   ~BallpistonServer();  // Shutdown, without time to drain

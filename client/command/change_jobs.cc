@@ -64,7 +64,8 @@ VerbResult Change(const std::string& action, decltype(&CancelJob) change, const 
                   const Options& options, const Terminal& terminal) {
   const auto stays = [&](const v1::EnsembleJob& job) {
     const bool is_kept = job.pinned() && change == &DeleteJob;
-    if (is_kept) terminal.Note(job.name() + " is pinned and stays; delete it by its name");
+    if (is_kept)
+      terminal.Note(job.name() + " is pinned and was not deleted; to delete it, give its name");
     return is_kept;
   };
   return WithJobs(options, terminal, states, [&](const auto& connection, auto jobs) -> VerbResult {

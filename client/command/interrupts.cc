@@ -64,7 +64,8 @@ void Interrupts::Listen() {
       EndProgram();
     }).detach();
   } catch (const std::system_error&) {
-    alarm(1);  // no thread is left: SIGALRM ends the program
+    signal(SIGALRM, [](int) { EndProgram(); });  // no thread is left
+    alarm(1);
   }
   const std::lock_guard lock(mutex_);
   if (farewell_ != nullptr) (*farewell_)();

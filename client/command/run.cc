@@ -188,8 +188,8 @@ absl::StatusOr<v1::ListResultsResponse> PageOf(const Connection& connection,
 }
 
 // If the server restarts, requests only the current page again: the earlier pages have been
-// printed. Calls Begin of the writer when the first page has arrived. Without `has_names` the same
-// points give the same bytes: their names have the job's id.
+// printed. Calls Begin of the writer when the first page has arrived. `has_names`: also prints the
+// names of the points. They contain the job's id; without them the same points give the same bytes.
 absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job,
                          const Options& options, bool has_names, Destination& destination,
                          std::ostream& err) {
@@ -303,7 +303,9 @@ VerbResult Result(const Options& options, Terminal& terminal) {
         if (jobs.size() > 1 && (!options.save.empty() || options.format == Format::kCsv)) {
           return TooMany(jobs.size());
         }
-        const bool has_names = jobs.size() > 1 && options.format == Format::kJsonl;
+        // A label may stand for one job today and for two tomorrow.
+        const bool may_be_many = jobs.size() > 1 || options.jobs.empty();
+        const bool has_names = may_be_many && options.format == Format::kJsonl;
         ExitCode worst = ExitCode::kDone;
         absl::Status missing;
         for (const v1::EnsembleJob& job : jobs) {

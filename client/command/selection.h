@@ -20,9 +20,9 @@ inline const JobStates kEndedStates = {v1::EnsembleJob::SUCCEEDED, v1::EnsembleJ
 using VerbOfJobs =
     std::function<VerbResult(const Connection&, const std::vector<v1::EnsembleJob>&)>;
 
-// Connects and calls `verb` with the named jobs, of which only the name is known; with --label with
-// those in one of the states (empty: any), newest first. INVALID_ARGUMENT if there are neither
-// names nor labels, or both. NOT_FOUND if no job has the labels.
+// Connects and calls `verb` with the named jobs (only `name` is set); with --label with those in
+// one of the states (empty: any), newest first. INVALID_ARGUMENT if there are neither names nor
+// labels, or both. NOT_FOUND if no job has the labels.
 VerbResult WithJobs(const Options& options, const Terminal& terminal, const JobStates& states,
                     const VerbOfJobs& verb);
 

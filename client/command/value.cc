@@ -73,11 +73,12 @@ absl::StatusOr<std::map<std::string, std::string>> ParseLabels(const std::string
   return labels;
 }
 
-// FromString also reads years with fewer digits.
+// FromString also reads fewer digits.
 absl::StatusOr<Timestamp> ParseDate(const std::string& text) {
   Timestamp time;
   const std::string full = absl::StrContains(text, 'T') ? text : text + "T00:00:00Z";
-  if (text.find('-') == 4 && TimeUtil::FromString(full, &time)) return time;
+  const bool has_all_digits = text.find('-') == 4 && full.size() >= 20;
+  if (has_all_digits && TimeUtil::FromString(full, &time)) return time;
   return NotPermitted(text, "is not a date (UTC): write 2026-01-31 or 2026-01-31T12:00:00Z");
 }
 

@@ -497,7 +497,7 @@ std::vector<Verb> AllVerbs() {
        &Label},
       {"delete",
        "delete ended jobs and their results",
-       "Prints the name of each job that it deleted. --label deletes no pinned job.",
+       "Prints the name of each job that it deleted. With --label, pinned jobs are not deleted.",
        {kJobsOrLabels},
        With({&kConfirmed, &kServer}),
        {"delete ensembleJobs/ID", "delete ID1 ID2", "delete --label who=pilot"},
@@ -545,7 +545,8 @@ std::vector<Verb> AllVerbs() {
        /*passes_words_on=*/true},
       {"export",
        "write the estimates of many jobs to one file",
-       "A row for each estimate of each point, with the job, its owner, labels, seed, precision, "
+       "A row for each estimate of each point, with the job, its principal, labels, seed, "
+       "precision, "
        "engine version and parameters. Without JOB and --label: of all jobs, for an administrator "
        "also those of other users. A job whose column 'continues' names another one contains its "
        "samples: do not average the two. Needs Python with the package ballpiston, and for "

@@ -164,7 +164,8 @@ Forecast ForecastOfLyapunov(Model model, const PointParameters& point) {
 // where they differ by a factor of 1.5.
 constexpr Scatter OfOrbits(double error) { return {error, kOrbitsPerCollision}; }
 
-// lambda_2 scatters more in small cells, as measured for rho = 0.7, 0.706, 0.707 and 0.7071.
+// lambda_2 scatters more in small cells: a fit to errors that were measured for rho = 0.7, 0.706,
+// 0.707 and 0.7071, which grow with the logarithm of the distance to rho = 1/sqrt(2).
 Scatter OfSecond(const PointParameters& point, double usual) {
   constexpr double kLargest = 2.5, kAtASmallCell = 1.1, kSmallCell = 0.007;
   const double room = std::numbers::sqrt2 / 2 - point[kRho];

@@ -7,9 +7,9 @@
 //
 // The free time of an event is the time since the last event of its kind with the same ball and
 // piston, on the same side of the ball: the paper's tau_bp (eq. bpfreetime), and likewise for the
-// walls. In a trace much longer than the mean free time of a kind, that is its mean over the events
-// of the kind; for exchanges in a gas it is 1/exchange rate (gas_exchange_rate.h). Shorter traces
-// lose long free times.
+// walls. If the trace is much longer than the mean free time of a kind, the mean over the events of
+// that kind is the mean free time; for exchanges in a gas it is 1/exchange rate
+// (gas_exchange_rate.h). Shorter traces lose long free times.
 //
 // Properties, each with a test of its name:
 //   1. PairTraceMatchesTheReferenceFlow.

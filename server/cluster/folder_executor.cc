@@ -122,7 +122,8 @@ void FolderExecutor::NoteOutcome(const absl::Status& outcome) {
   MutexLock lock(mutex_);
   look_began_.reset();
   status_.taken_leases = static_cast<double>(taken_);
-  // Between two leases that look for a worker there is work, so Slurm's workers have to stay.
+  // While no worker takes leases, one lease at a time is laid. In the pause between two leases
+  // there is still work, so Slurm's workers must stay.
   const bool lays_soon = outcome.ok() && !has_workers_ && SteadyNow() < next_laying_;
   status_.waiting_leases = static_cast<double>(leases_.size() - taken_ + (lays_soon ? 1 : 0));
   const std::string problem(outcome.message());

@@ -81,7 +81,7 @@ std::string WithoutSlurmsVariables() {
   for (char** variable = environ; *variable != nullptr; ++variable) {
     const absl::string_view text = *variable;
     const absl::string_view name = text.substr(0, text.find('='));
-    if (name == "SLURM_CONF" || name == "SLURM_JWT") continue;  // where Slurm is; a token for it
+    if (name == "SLURM_CONF" || name == "SLURM_JWT") continue;  // configuration, token
     for (const absl::string_view prefix : {"SLURM_", "SBATCH_", "SQUEUE_", "SCANCEL_"}) {
       if (absl::StartsWith(name, prefix)) absl::StrAppend(&line, " -u ", Quoted(name));
     }
@@ -217,6 +217,7 @@ void SlurmWorkers::Start() {
 
 void SlurmWorkers::Look() {
   const FolderStatus work = work_();
+  if (work.waiting_leases == 0) submitted_ = 0;  // then a worker rightly ends without a lease
   const bool has_work = work.waiting_leases + work.taken_leases > 0;
   const Clock::time_point now = SteadyNow();
   const bool is_idle = !has_work && !may_have_workers_ && backoff_.count() == 0;

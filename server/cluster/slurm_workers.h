@@ -15,7 +15,7 @@
 //   working   | the start, a lease that one of them took, or a query that  | those missing,
 //             | finds as many as there are leases                          | at most `step_`
 //   failing   | one would wait for ever (those that wait are cancelled),   | one, for a trial
-//             | or more have ended than have taken a lease (`submitted_`)  |
+//             | or some have ended without taking a lease (`submitted_`)   |
 //   on trial  | the submission of this one                                 | none
 //
 // `step_` is --slurm-workers at first. A failure makes it 1, a refusal by Slurm half of the number
@@ -129,9 +129,9 @@ class SlurmWorkers {
   absl::Status fault_;            // why the workers fail; OK: they work
   // The number of leases taken when workers were submitted. Empty unless none was taken since.
   std::optional<double> trial_;
-  // At most the leases taken and the workers in the queue, unless a worker has ended without taking
-  // a lease. Grows by each submitted worker, and with the leases so that only one of each running
-  // worker counts: others prove nothing about the workers that ended.
+  // A lower bound of (leases taken + workers in the queue), which only a worker that ended without
+  // a lease breaks. Each submission raises it. It is at least (leases taken + waiting workers), so
+  // a running worker with many leases hides at most one such end. 0 when no lease waits.
   double submitted_ = 0;
   size_t step_;
   Clock::time_point next_query_ = {};

@@ -26,9 +26,10 @@ constexpr char kDescription[] =
     "The server of ballpiston: computes ensembles of rarely interacting billiards.";
 constexpr char kExitCodes[] =
     "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 the disk of the store is full or\n"
-    "fails, an address is in use, or no descriptor is left for a connection, retry later; 2 a\n"
-    "wrong flag, an unsafe combination of flags, a folder in use, or a store that is not sound;\n"
-    "6 a data folder that is not writable, or that other users can enter.";
+    "fails, an address cannot be used, or no descriptor is left for a connection, retry later;\n"
+    "2 a wrong flag, an unsafe combination of flags, a folder in use, or a store that is not\n"
+    "sound; 6 a data folder that is not writable, or that other users can enter and the server\n"
+    "may not close.";
 constexpr int kHelpIndentation = 8;
 
 constexpr int kMostWorkers = 1024;

@@ -68,8 +68,8 @@ class RunJournal {
   // OK: every point is finished. CANCELLED: the run was stopped. Otherwise the reason of failure.
   virtual void Ended(const absl::Status& outcome) = 0;
 
-  // Called after a turn with results. Returns when the journal has room for more reports, with the
-  // seconds that this took: 0 if there was room.
+  // Called after a turn with results. Waits until the journal has room for more reports. Returns
+  // the seconds of the wait.
   virtual double AwaitRoom() = 0;
 };
 

@@ -325,7 +325,7 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
       samples_.fetch_add(static_cast<double>(samples), std::memory_order_relaxed);
       return absl::OkStatus();
     });
-    is_finished = open->fold().finished();
+    is_finished = merged.ok() && open->fold().finished();
     if (is_finished) {
       open->RequestStop();
       run->TurnBegins();  // so that the run does not end before its point

@@ -28,8 +28,8 @@ struct ListenAddress {
 // INVALID_ARGUMENT names the flag --listen, the value, and the permitted values.
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
 
-// UNAVAILABLE if the socket does not refuse connections, because a server may listen on it.
-// gRPC would replace it; other files it leaves alone, and does not start.
+// UNAVAILABLE if the socket does not refuse connections, because a server may listen on it. gRPC
+// would replace it; other files it leaves alone, and does not start.
 absl::Status CheckSocketIsFree(const ListenAddress& address);
 
 }  // namespace ballpiston::server

@@ -138,7 +138,7 @@ std::optional<JobRecord> FindAnswer(Database& database, const std::string& princ
                                  "sequence IN (SELECT sequence FROM jobs WHERE principal = ?"
                                  " AND question = ? AND question <> x'' AND state = 4"
                                  " AND expired = 0 ORDER BY sequence DESC LIMIT ?)"
-                                 " ORDER BY pinned DESC, end_time DESC"),
+                                 " ORDER BY pinned DESC, end_time DESC, sequence DESC"),
                       principal, Blob{question}, kMostAnswers);
   while (query.Next()) {
     const JobRecord record = RecordOf(query);

@@ -50,8 +50,8 @@ std::optional<JobRecord> FindJobOfCancellation(Database& database, const std::st
                                                const std::string& request_id);
 
 // The principal's job that SUCCEEDED in answering the question (JobRecord::question) and for which
-// `accepts` returns true, given the job without its grid: a pinned one, else the one whose results
-// expire last. Looks only at the kMostAnswers newest jobs.
+// `accepts` returns true, given the job without its grid: a pinned one, else the one that ended
+// last. Looks only at the kMostAnswers newest jobs.
 inline constexpr int kMostAnswers = 1'000;
 std::optional<JobRecord> FindAnswer(Database& database, const std::string& principal,
                                     const std::string& question,

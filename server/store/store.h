@@ -111,7 +111,7 @@ class Store {
     return Returned(read, [&](const Change& run) { return readers_.Read(run); });
   }
 
-  // Returns when few enough writes are pending, or the store is closing. Returns the seconds of the
+  // Waits until few enough writes are pending, or the store is closing. Returns the seconds of the
   // wait.
   double AwaitRoom();
 

@@ -153,7 +153,7 @@ describe('The page', () => {
     await banner().waitFor({state: 'hidden'});
   });
 
-  it('returns to the view that was asked for without the token', async () => {
+  it('returns to the requested view after the token is given', async () => {
     await page.goto(web.address.replace(/#.*/, `#${firstHit}/results/2`));
     await banner().filter({hasText: 'Authorization: Bearer TOKEN is missing'}).waitFor();
     await page.goto(web.address);

@@ -316,7 +316,7 @@ class Client:
     @takes_keywords_of(specification)
     def sample(self, experiment: Any, **question: Any) -> Collisions:
         """The collisions of a point's samples, for observables of one's own: those that `run` with
-        the same arguments averages, with verify=True if there is a closed form.
+        the same arguments averages. If there is a closed form, `run` samples only with verify=True.
 
         Args:
             experiment: one with a ball-piston pair, with the keywords of

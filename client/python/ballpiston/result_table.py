@@ -61,7 +61,8 @@ def _lines(points: Sequence[Any]) -> list[list[str]]:
 def _ending(points: Sequence[Any]) -> list[str]:
     more = [f"and {len(points) - _MOST_ROWS} more points"] if len(points) > _MOST_ROWS else []
     remarks = dict.fromkeys(remark for point in points for remark in point.remarks)
-    return more + [f"remark: {remark}" for remark in remarks] + warnings_of(points)
+    warnings = warnings_of(points)[:_MOST_ROWS]
+    return more + [f"remark: {remark}" for remark in remarks] + warnings
 
 
 def warnings_of(points: Sequence[Any]) -> list[str]:

@@ -21,7 +21,7 @@
   const COLOURS = 6; // --line-0 to --line-5 in style.css
   const SYMBOL_RADIUS = 3.5;
   const MOST_TABLE_ROWS = 200;
-  const MOST_DECADES = 6; // with a number on a log axis
+  const MOST_DECADES = 6; // that have a label on a log axis, about
   const LEAST_WIDTH = 1e-16; // of a range of x; uPlot ignores smaller ones
   const ROOM = 0.06; // of the range of y, above and below
 
@@ -182,8 +182,8 @@
     return String(tick);
   }
 
-  // Ticks of a log axis: 1, 2 and 5 of each decade; only 1, of some decades, if there are many; else
-  // multiples of `step`, if less than two of those ticks are in the range.
+  // Ticks of a log axis: 1, 2 and 5 of each decade; only 1, of some decades, if there are many;
+  // else multiples of `step`, if less than two of those ticks are in the range.
   function logTicks(u, axis, min, max, step) {
     const [first, last] = [Math.log10(min), Math.log10(max)];
     const digits = last - first > 3 ? [1] : [1, 2, 5];
@@ -293,10 +293,10 @@
       this.showNumbers();
     }
 
-    // Keeps the zoom.
+    // Keeps the zoom, unless it has no data any more.
     replace(data) {
       const {min, max} = this.uplot.scales.x;
-      const isZoomed = isSelected(this.uplot.data[0], min, max);
+      const isZoomed = isSelected(this.uplot.data[0], min, max) && max >= data[0][0];
       this.uplot.setData(data, !isZoomed);
       if (isZoomed) this.uplot.redraw();
     }
@@ -372,7 +372,7 @@
     }
 
     read(u) {
-      let i = u.cursor.idx; // of the nearest x; but a step holds from its x to the next
+      let i = u.cursor.idx; // of the nearest x, but a step holds from its x to the next one
       const isStep = this.chart.lines.some((line) => line.stepped || line.kind === 'steps');
       if (isStep && u.data[0][i] > u.posToVal(u.cursor.left, 'x')) i = Math.max(i - 1, 0);
       this.readout.textContent = isNumber(i) ? this.valuesAt(u.data, i) : '';
@@ -403,8 +403,8 @@
   // The kinds of lines that measured values are compared with, and their labels.
   const COMPARED = {exact: 'exact', limit: 'Markov limit'};
 
-  // The lines of one series, from its places {x, value, error, exact, limit, source} in the order of
-  // x. A series without a label is the only one of its chart: its label is the places' sources.
+  // The lines of one series, from its places {x, value, error, exact, limit, source} in the order
+  // of x. A series without a label is the only one of its chart: its label is the places' sources.
   function seriesLines(places, label = '', colour = 0) {
     const line = (field, more) => ({
       x: places.map((at) => at.x),
@@ -438,7 +438,7 @@
     repaintCharts();
   }
 
-  // Paper has the light theme.
+  // Pages are printed with the light theme.
   let screenTheme;
   addEventListener('beforeprint', () => {
     screenTheme = document.documentElement.dataset.theme ?? 'auto';

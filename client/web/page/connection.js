@@ -6,7 +6,7 @@
   const TOKEN = 'ballpiston-token';
   const FIRST_DELAY = 500; // ms; doubles with each failure
   const LONGEST_DELAY = 8000;
-  const HIDDEN = 5000; // ms, after which a stream of a hidden tab ends
+  const LONGEST_HIDDEN = 5000; // ms, after which a stream of a hidden tab ends
 
   // `name`: localStorage or sessionStorage. Reading it throws if the browser blocks it; then values
   // last until the page is reloaded.
@@ -23,7 +23,7 @@
   const token = () => session.getItem(TOKEN) ?? '';
 
   // Moves the token from the address #token=... into this tab's storage: then bookmarks do not
-  // contain it, and a reload keeps it. Then shows `previous`, the fragment before.
+  // contain it, and a reload keeps it. Then sets the fragment to `previous`, or to #jobs.
   function takeToken(previous) {
     const match = /^#token=([\w-]+)$/.exec(location.hash);
     if (!match) return;
@@ -126,13 +126,14 @@
   // Thrown by a stream that ended because its tab was hidden.
   class TabHidden extends Error {}
 
-  // The messages of a stream. Ends the stream when the tab is hidden for HIDDEN.
+  // The messages of a stream. Ends the stream when the tab has been hidden for LONGEST_HIDDEN.
   async function* streamWhileVisible(method, request, signal) {
     const controller = new AbortController();
     let timer;
     const look = () => {
       clearTimeout(timer);
-      if (document.hidden) timer = setTimeout(() => controller.abort(new TabHidden()), HIDDEN);
+      if (!document.hidden) return;
+      timer = setTimeout(() => controller.abort(new TabHidden()), LONGEST_HIDDEN);
     };
     document.addEventListener('visibilitychange', look, {signal: controller.signal});
     look();

@@ -127,7 +127,7 @@
 
   const estimateOf = (point, name) => point.estimates.find((estimate) => estimate.name === name);
 
-  // What gives the point's values.
+  // 'measured', or the model that computed the values.
   const sourceOf = (point) => (point.samples > 0 ? 'measured' : words(point.model));
 
   // The text as one word of a POSIX shell.

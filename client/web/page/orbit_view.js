@@ -24,7 +24,14 @@
     {name: 'cells', label: 'Cells, N or NxM; empty: a pair', value: ''},
     {name: 'temperature', label: 'Temperature of a gas', value: '1', ...NUMBER},
     {name: 'seed', label: 'Seed', value: '0', pattern: '[0-9]*'},
-    {name: 'events', label: 'Events', value: '10000', ...NUMBER, pattern: '[0-9]+([eE][0-9]+)?'},
+    {
+      name: 'events',
+      label: 'Events',
+      value: '10000',
+      inputmode: 'decimal',
+      pattern: '[0-9]+([eE][0-9]+)?',
+      title: 'a whole number such as 10000 or 1e4',
+    },
   ];
 
   function fieldElement({name, label, ...more}) {

@@ -197,7 +197,9 @@ TEST_F(SlurmWorkersTest, WorkersThatFailAreTriedOneByOne) {
                       {{.running = 5}, 4, "without taking a lease", {}, 0, 10},
                       {{.running = 5}, 4, "without taking a lease", {1}, 0, 10},
                       {{.running = 6}, 9, "", {2}, 0, 10},
-                      {{}, 11, "", {4}, 0, 10}};  // each had taken a lease
+                      {{}, 11, "", {4}, 0, 10},  // each had taken a lease
+                      {{.running = 4}, 11, "", {}, 0, 0},
+                      {{}, 11, "", {5}, 0}};  // they ended while no lease waited
   SlurmWorkers workers = New();
   for (const Row& row : rows) {
     SCOPED_TRACE(&row - rows);

@@ -77,7 +77,7 @@ TEST_F(WorkerProgramTest, ACrashMovesTheLeaseThatWasComputed) {
 }
 
 // On NFS a worker dies of SIGBUS when its program is replaced. The test sends the signal in the
-// name of the worker.
+// name of the worker, because the handler ignores signals of other processes.
 TEST_F(WorkerProgramTest, ABusErrorLeavesTheLeaseInItsPlace) {
   Lay("a", LeaseOf(SpecOf(kEquilibrium, Model::kBilliardReference, 5'000'000)), 1e-9);
   const size_t bytes = LargestIn("todo");

@@ -25,7 +25,7 @@ import numpy as np
 from ballpiston.figures.parts.cell_outline import CENTRES, half_height, overlap_length
 from ballpiston.figures.parts.tables import FloatArray
 
-_DIGITS = 1e-10  # to which a front's curvature converges
+_TOLERANCE = 1e-10  # relative, of a front's curvature
 _MOST_HITS = 400  # of the ball until then: 16 in most cells, 100 for rho near 1/2 or 1/sqrt(2)
 _CHUNK = 16_384  # collisions that are followed together
 _SMALLEST_COSINE = 1e-12
@@ -110,7 +110,7 @@ def stable_curvature(
         bent, turned = bent + bend * flat, turned + bend * spread
         unit = 1 / turned  # all four grow exponentially
         flat, spread, bent, turned = flat * unit, spread * unit, bent * unit, turned * unit
-        if np.allclose(bent, earlier, rtol=_DIGITS, atol=0):
+        if np.allclose(bent, earlier, rtol=_TOLERANCE, atol=0):
             break
     return bent
 
