@@ -12,7 +12,7 @@ def markdown(path: Path, stage: Path) -> str:
     """The notebook's cells. Writes its pictures to the staged folder of the notebook."""
     name = path.relative_to(PROJECT)
     parts = []
-    for cell in json.loads(path.read_text())["cells"]:
+    for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
         source = "".join(cell["source"])
         if cell["cell_type"] == "markdown":
             parts.append(source)

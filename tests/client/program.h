@@ -44,7 +44,7 @@ class EmptyHome {
         if (!flag->variable.empty()) variables_.try_emplace(flag->variable, flag->variable);
       }
     }
-    std::filesystem::create_directory(File("ballpiston"));
+    mkdir(File("ballpiston").c_str(), 0700);  // other users must not write to it
   }
 
   // XDG_CONFIG_HOME and XDG_STATE_HOME are also this folder.

@@ -8,9 +8,9 @@ namespace {
 class FigureTest : public ::testing::Test {
  protected:
   Words Draw(const std::string& flags) const {
-    return Split("figure mean-free-time --delta 0.2,0.1 --out " + folder_ + " " + flags);
+    return Joined({Split("figure mean-free-time --delta 0.2,0.1 " + flags), {"--out", folder_}});
   }
-  ProcessOptions Cell() const { return server_.Command(Split("figure cell --out " + folder_)); }
+  ProcessOptions Cell() const { return server_.Command({"figure", "cell", "--out", folder_}); }
   std::string File(const std::string& name) const { return folder_ + "/" + name; }
 
   const TestServer server_;
@@ -20,7 +20,7 @@ class FigureTest : public ::testing::Test {
 TEST_F(FigureTest, LeavesDataAndPictures) {
   const ProcessResult result = server_.Client(Draw("--samples 200 --collisions 2000"));
   EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(result.err, kQuiet);
   const std::vector<std::string> parts =
       absl::StrSplit(Contents(File("mean-free-time.csv")), ",mean_free_time_conditional,");
   EXPECT_EQ(parts.size(), 1 + 2 * 59u);

@@ -14,8 +14,8 @@ class JobTest : public ::testing::Test {
 
   // The client as a command of bash, in which $client stands for `ballpiston` with the server.
   ProcessResult Bash(const std::string& command) const {
-    ProcessOptions options = {.command = {"bash", "-c", command},
-                              .environment = CleanEnvironment(server_.folder())};
+    ProcessOptions options = ClientCommand(server_.folder(), {});
+    options.command = {"bash", "-c", command};
     options.environment["BALLPISTON_SERVER"] = server_.address();
     options.environment["client"] = ClientProgram();
     return RunProgram(options);
@@ -100,7 +100,7 @@ TEST_F(JobTest, AFullDiskOrClosedOutputIsAnError) {
 }
 
 TEST_F(JobTest, ThePythonPackageRunsWhereTheParentIgnoresItsChildren) {
-  const std::string figure = " figure cell --out " + File("figure");
+  const std::string figure = " figure cell --out '" + File("figure") + "'";
   EXPECT_THAT(Bash("env --ignore-signal=CHLD $client" + figure), ExitsWith(0));
 }
 

@@ -42,7 +42,7 @@ TEST_F(ProgramFigure, StabilityHasAllSituationsAndMethods) {
   EXPECT_EQ(Words(absl::StrSplit(data, '\n', absl::SkipEmpty())).size(),
             2 + 7 * 11 + 9 * 10 + 16 * 4u);
   EXPECT_THAT(data, HasSubstr(",\"grazing, rho = 0.501, 0.5296, 0.6, 0.65, 0.7\",lanes,"));
-  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(result.err, kQuiet);
   EXPECT_THAT(Contents(figure_ + "/stability.svg"), HasSubstr("one hot piston"));
 }
 

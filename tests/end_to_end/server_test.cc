@@ -44,7 +44,7 @@ TEST_F(ServerTest, OneCommandDoesTheJobInAnEmptyHome) {
   ASSERT_THAT(result, ExitsWith(0));
   EXPECT_EQ(At(ParseJson(result.out), "job", "state").string_value(), "SUCCEEDED");
   EXPECT_TRUE(fs::exists(State("server.log")));
-  EXPECT_EQ(fs::status(State("")).permissions(), fs::perms::owner_all);
+  EXPECT_EQ(ModeOf(State("")), 0700u);
   EXPECT_EQ(ModeOf(State("server.socket")) & 077u, 0u);
   ASSERT_EQ(Servers().size(), 1u);
   const std::string flags = Contents("/proc/" + std::to_string(Servers()[0]) + "/cmdline");

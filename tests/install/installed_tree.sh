@@ -7,8 +7,9 @@ set -euo pipefail
 build=$1
 
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+trap '{ "$work/prefix/bin/ballpiston" server stop; rm -rf "$work"; } &>/dev/null || true' EXIT
 prefix=$work/prefix
+unset "${!BALLPISTON_@}"
 export HOME=$work XDG_STATE_HOME=$work/state
 mkdir "$XDG_STATE_HOME"
 

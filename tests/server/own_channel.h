@@ -17,6 +17,7 @@ inline std::shared_ptr<grpc::Channel> OwnChannel(
     const std::shared_ptr<grpc::ChannelCredentials>& credentials = nullptr,
     grpc::ChannelArguments arguments = {}) {
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);  // whatever http_proxy is
   const auto seconds = std::chrono::seconds(kPatience).count();
   arguments.SetServiceConfigJSON(R"({"methodConfig": [{"name": [{}], "timeout": ")" +
                                  std::to_string(seconds) + R"(s"}]})");

@@ -133,8 +133,7 @@ TEST_F(CommandLineTest, AFigureStartsPythonAndReturnsItsExitCode) {
   const std::string python = home_.File("python");
   WriteFile(python,
             "#!/bin/sh\n[ \"$1\" = -c ] && exit 0  # the check of its modules\n"
-            "echo \"$*\" $BALLPISTON_SERVER $PYTHONSAFEPATH >" +
-                home_.File("said") + "; exit 3\n");
+            "echo \"$*\" $BALLPISTON_SERVER $PYTHONSAFEPATH >\"${0%/*}/said\"; exit 3\n");
   std::filesystem::permissions(python, std::filesystem::perms::owner_all);
   const ScopedVariable program("BALLPISTON_PYTHON", python);
   const ScopedVariable server("BALLPISTON_SERVER");  // the figure sets it

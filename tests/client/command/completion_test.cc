@@ -120,10 +120,10 @@ class CompletionScriptTest : public ::testing::Test {
 };
 
 constexpr char kFakeProgram[] =
-    "ballpiston() { printf '<%s>\\n' \"$@\" >$ASKED; printf $OFFERS; }\n";
+    "ballpiston() { printf '<%s>\\n' \"$@\" >\"$ASKED\"; printf $OFFERS; }\n";
 
 std::string InBash(const std::string& offers, const std::string& words, int index) {
-  return std::string(". $SCRIPT; OFFERS='") + offers + "'; COMP_WORDS=(" + words +
+  return std::string(". \"$SCRIPT\"; OFFERS='") + offers + "'; COMP_WORDS=(" + words +
          "); COMP_CWORD=" + std::to_string(index) + "; compopt() { echo compopt $*; }\n" +
          kFakeProgram + "_ballpiston; printf '%s\\n' \"${COMPREPLY[@]}\"; complete -p";
 }
@@ -148,7 +148,7 @@ TEST_F(CompletionScriptTest, BashChoosesFromTheWords) {
 TEST_F(CompletionScriptTest, BashOffersFiles) {
   WriteFile(home_.File("spec one.json"), "");
   EXPECT_THAT(
-      Run("bash", "cd $FOLDER; " + InBash("FILES\\n", "ballpiston run --spec spec", 3)),
+      Run("bash", "cd \"$FOLDER\"; " + InBash("FILES\\n", "ballpiston run --spec spec", 3)),
       ElementsAre("compopt -o filenames", "spec one.json", "complete -F _ballpiston ballpiston"));
 }
 

@@ -76,9 +76,9 @@ TEST_F(ConnectionTest, AnErrorOfAWatchShowsHowToWatchTheJobAgain) {
     const Outcome outcome = WithServer(absl::StrSplit(verb, ' '));
     EXPECT_EQ(outcome.code, 6);
     EXPECT_THAT(outcome.err, StartsWith("The job continues.\n  watch it again:  ballpiston watch "
-                                        "ensembleJobs/abc --server " +
-                                        server_.Address() + "\n"));
-    EXPECT_THAT(outcome.err, EndsWith("\nballpiston: expired\n"));
+                                        "ensembleJobs/abc --server "));
+    EXPECT_THAT(outcome.err,
+                AllOf(HasSubstr(server_.Address()), EndsWith("\nballpiston: expired\n")));
   }
 }
 

@@ -80,7 +80,7 @@ TEST_F(ClientTest, ARetryWaitsAsLongAsTheServerAsks) {
   const Client client = StartServer();
   const absl::Time begin = absl::Now();
   EXPECT_OK(client.Pin(kJobName, true));
-  EXPECT_GE(absl::Now() - begin, absl::Milliseconds(800));
+  EXPECT_GE(absl::Now() - begin, absl::Milliseconds(790));
 }
 
 TEST_F(ClientTest, ACallbackEndsATrace) {

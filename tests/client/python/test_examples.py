@@ -61,7 +61,7 @@ def test_a_notebook_runs_and_prints_its_stored_output(
 ) -> None:
     pytest.importorskip("matplotlib").use("Agg")
     monkeypatch.chdir(tmp_path)
-    cells = json.loads((EXAMPLES / name).read_text())["cells"]
+    cells = json.loads((EXAMPLES / name).read_text(encoding="utf-8"))["cells"]
     cells = [cell for cell in cells if cell["cell_type"] == "code"]
     assert any("\nassert " in "".join(cell["source"]) for cell in cells)
     names: dict[str, object] = {}
@@ -73,7 +73,7 @@ def test_a_notebook_runs_and_prints_its_stored_output(
 
 @pytest.mark.parametrize("name", NOTEBOOKS)
 def test_a_notebook_says_what_one_learns(name: str) -> None:
-    first = json.loads((EXAMPLES / name).read_text())["cells"][0]
+    first = json.loads((EXAMPLES / name).read_text(encoding="utf-8"))["cells"][0]
     assert first["cell_type"] == "markdown" and "**You learn** " in "".join(first["source"])
 
 

@@ -46,6 +46,7 @@ def test_the_same_question_is_answered_from_the_store(client: ballpiston.Client)
     )
     assert not again.answered_from_store
     assert again.name != job.name
+    again.watch()  # the next test lists active jobs
 
 
 def test_jobs_are_listed_by_state_and_experiment(

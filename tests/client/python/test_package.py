@@ -53,7 +53,7 @@ def test_pip_installs_the_package(tmp_path: Path) -> None:
     subprocess.run([*install, tmp_path / "client" / "python"], check=True)
     program = "import ballpiston; print(ballpiston.__file__, ballpiston.__version__)"
     run = subprocess.run([python, "-c", program], env={}, stdout=subprocess.PIPE, check=True)
-    place, version = run.stdout.decode().split()
+    place, version = run.stdout.decode().rsplit(maxsplit=1)
     assert Path(place).is_relative_to(environment)
     assert version == ballpiston.__version__
 

@@ -255,7 +255,8 @@ def test_the_end_of_the_name_decides_the_format(
 
 def test_links_permissions_and_pipes_stay(tmp_path: Path) -> None:
     target, link, pipe = (tmp_path / name for name in ("target", "link", "pipe"))
-    target.touch(0o640)
+    target.touch()
+    target.chmod(0o640)
     link.symlink_to("target")
     write_atomically(link, b"text")
     assert link.is_symlink() and target.read_bytes() == b"text"

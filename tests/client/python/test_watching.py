@@ -148,7 +148,7 @@ def on_a_terminal(program: str, argument: str) -> str:
         pass
     os.close(here)
     assert os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]) == 0, text
-    return text.decode()
+    return text.decode(errors="replace")
 
 
 class WrittenBar(Bar):

@@ -250,7 +250,7 @@ TEST_F(StoredLimitsTest, APinnedActiveJobCountsOnce) {
 TEST_F(StoredLimitsTest, AStoreFullOfPinnedJobsRejectsNewJobs) {
   Start({.max_store_bytes = 200'000});
   const std::string pinned = Id(kAnn, Request(1, 900));
-  ASSERT_OK(book_->Update(kAnn, pinned, {.pinned = true}));
+  ASSERT_OK(book_->Update(kRoot, pinned, {.pinned = true}));
   AwaitEnd(pinned);
   book_->KeepLimits(absl::Now());
   const absl::Status refused = Create(kBen, Request(2)).status();

@@ -270,7 +270,7 @@ TEST_F(SlurmToolsTest, TheQueueIsReadAndWarningsAreNot) {
 TEST_F(SlurmToolsTest, AToolThatRunsLocksNoStream) {
   const std::string started = folder_.File("started"), go = folder_.File("go");
   ASSERT_EQ(mkfifo(go.c_str(), 0600), 0);
-  Install("squeue", absl::StrCat("echo 1 >", started, "; cat ", go));
+  Install("squeue", "echo 1 >\"${0%/*}/started\"; cat \"${0%/*}/go\"");
   std::thread thread([&] { EXPECT_OK(New().Query().status()); });
   AwaitThat([&] { return std::filesystem::exists(started); });
   std::fflush(nullptr);
@@ -297,6 +297,10 @@ TEST_F(SlurmToolsTest, AnErrorHasTheToolsMessage) {
   EXPECT_EQ(error("kill -KILL $$"), "scancel was killed; its time limit is 60 s");
   EXPECT_EQ(error("kill -SEGV $$"), "scancel: ended by signal 11");
   std::filesystem::remove(folder_.File("scancel"));
+  for (const std::string tool : {"env", "timeout"}) {
+    std::filesystem::create_symlink("/usr/bin/" + tool, folder_.File(tool));
+  }
+  const ScopedVariable no_slurm("PATH", folder_.path()), english("LC_ALL", "C");
   EXPECT_THAT(New().Cancel(true),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("failed to run command")));
 }

@@ -110,6 +110,7 @@ TEST_F(TraceServiceTest, ATraceCountsAsAStreamUntilItsReaderGoes) {
 
 // A call with a large request counts as more than a trace.
 TEST_F(TraceServiceTest, TheMemoryOfTracesIsLimited) {
+  TestClient reader(OwnChannel(server().address(), nullptr, SmallWindow()));
   std::vector<std::unique_ptr<TraceStream>> traces;
   v1::EvaluatePairsRequest large;  // 0.8 MB
   large.mutable_rho()->Resize(100'000, kPaperRho);
@@ -120,8 +121,7 @@ TEST_F(TraceServiceTest, TheMemoryOfTracesIsLimited) {
       EXPECT_THAT(server().analytic().EvaluatePairs(&context, large, &response),
                   IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CALLS"));
     }
-    traces.push_back(
-        std::make_unique<TraceStream>(server(), TraceRequest(kMaxTracedEvents, "1000")));
+    traces.push_back(std::make_unique<TraceStream>(reader, kLong));
     ASSERT_TRUE(traces.back()->Next());
   }
   EXPECT_THAT(TraceStream(server(), TraceRequest(1)).End(),

@@ -58,8 +58,9 @@ TEST_F(DataFolder, AFileOfAnotherProgramNamedLockIsUnchanged) {
 
 TEST(DefaultDataFolder, IsInTheHomeOfTheUsersEntryIfHomeIsNotAnAbsolutePath) {
   const ScopedVariable state("XDG_STATE_HOME"), home("HOME", "relative");
-  const std::string expected = getpwuid(getuid())->pw_dir + std::string("/.local/state/ballpiston");
-  EXPECT_EQ(DataDirectory::Default(), expected);
+  const passwd* const user = getpwuid(getuid());
+  EXPECT_EQ(DataDirectory::Default(),
+            absl::StrCat(user == nullptr ? "" : user->pw_dir, "/.local/state/ballpiston"));
 }
 
 TEST_F(DataFolder, ANewFolderHasMode0700WhateverTheMask) {
@@ -116,10 +117,9 @@ TEST_F(DataFolder, AFileInItsPlaceIsRefused) {
 }
 
 TEST_F(DataFolder, AFolderOfAnotherUserIsRefused) {
-  if (geteuid() != 0) GTEST_SKIP() << "only root can give a folder away";
   for (const mode_t mode : {0755u, 0700u}) {
     Make(mode);
-    ASSERT_EQ(chown(path_.c_str(), 65534, 65534), 0);
+    if (chown(path_.c_str(), 65534, 65534) != 0) GTEST_SKIP() << "only root can give a folder away";
     EXPECT_THAT(DataDirectory::Open(path_),
                 StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("another user (65534)")));
     EXPECT_EQ(Mode(), mode);
