@@ -34,8 +34,8 @@ constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may wa
 constexpr int kOtherThreads = 4'096;
 constexpr size_t kTransferBytes = size_t{512} << 20;  // connections, and requests that arrive
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
-// The longest delay until health reports that the store fails, and until a revoked watch or, at a
-// stop, a connection without calls ends.
+// The longest delay until health reports that the store fails, until a revoked watch ends, and, at
+// a stop without calls of the API in progress, until all connections end.
 constexpr std::chrono::milliseconds kHealthInterval(200);
 constexpr std::chrono::milliseconds kLateCalls(100);  // may still arrive when a stop begins
 

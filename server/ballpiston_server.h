@@ -90,8 +90,8 @@ class BallpistonServer {
   absl::Status StartMetrics();
   // While the disk rejects writes, the service that needs it is NOT_SERVING, so that clients can
   // choose another server. The other services and the whole server stay SERVING, because a restart
-  // would not repair the disk. The same thread calls Streams::EndRevoked and, at a stop, ends the
-  // connections when no call is in progress.
+  // would not repair the disk. The same thread calls Streams::EndRevoked and, at a stop, ends all
+  // connections when no call of the API is in progress.
   void StartHealth();
 
   const ServerOptions options_;
@@ -100,7 +100,7 @@ class BallpistonServer {
   std::unique_ptr<Door> door_;
   std::atomic<bool> draining_ = false;
   bool shut_down_ = false;
-  std::atomic<bool> stopping_ = false;  // gRPC takes no more calls
+  std::atomic<bool> stopping_ = false;  // gRPC is being shut down
   CallObserver calls_;
   std::unique_ptr<Store> store_;
   std::shared_ptr<CrashRecord> crashes_;

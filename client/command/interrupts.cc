@@ -64,8 +64,10 @@ void Interrupts::Listen() {
       EndProgram();
     }).detach();
   } catch (const std::system_error&) {
-    signal(SIGALRM, [](int) { EndProgram(); });  // no thread is left
-    alarm(1);
+    // No thread is left. A signal handler may not remove files, so this is done before.
+    RemoveUnfinishedFiles();
+    signal(SIGALRM, [](int) { _exit(static_cast<int>(ExitCode::kInterrupted)); });
+    ualarm(static_cast<useconds_t>(kLongestFarewell / std::chrono::microseconds(1)), 0);
   }
   const std::lock_guard lock(mutex_);
   if (farewell_ != nullptr) (*farewell_)();

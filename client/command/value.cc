@@ -73,12 +73,16 @@ absl::StatusOr<std::map<std::string, std::string>> ParseLabels(const std::string
   return labels;
 }
 
-// FromString also reads fewer digits.
+// TimeUtil also reads fewer digits.
+bool HasAllDigits(const std::string& time) {
+  return time.size() >= 20 && time[4] == '-' && time[7] == '-' && time[10] == 'T' &&
+         time[13] == ':' && time[16] == ':';
+}
+
 absl::StatusOr<Timestamp> ParseDate(const std::string& text) {
   Timestamp time;
   const std::string full = absl::StrContains(text, 'T') ? text : text + "T00:00:00Z";
-  const bool has_all_digits = text.find('-') == 4 && full.size() >= 20;
-  if (has_all_digits && TimeUtil::FromString(full, &time)) return time;
+  if (HasAllDigits(full) && TimeUtil::FromString(full, &time)) return time;
   return NotPermitted(text, "is not a date (UTC): write 2026-01-31 or 2026-01-31T12:00:00Z");
 }
 

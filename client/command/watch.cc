@@ -18,7 +18,7 @@ namespace {
 
 using Ended = absl::StatusOr<v1::EnsembleJob>;
 
-// At the same time. By default a server permits a principal no more.
+// Jobs that are watched at the same time. By default a server permits a principal no more streams.
 constexpr size_t kMostWatches = 1'024;
 
 VerbResult RunCommand(const v1::EnsembleJob& job, const Options& options) {
@@ -40,8 +40,8 @@ VerbResult Finish(const Ended& job, const Options& options, const Terminal& term
   return ReportEnd(*job, terminal);
 }
 
-// Watches each job on a thread, and prints its name and state when it ends. With --any the first
-// one ends the other watches.
+// Watches each job on a thread, and prints its name and state when it ends; further jobs after the
+// first kMostWatches have to wait for a thread. With --any the first one ends the other watches.
 VerbResult WatchSeveral(const Connection& connection, const std::vector<v1::EnsembleJob>& jobs,
                         const Options& options, Terminal& terminal) {
   std::mutex mutex;  // one job at a time is reported

@@ -320,11 +320,13 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
       checked = open->DropImpossible(report.chunks);
       report.partial = {};
     }
-    absl::Status merged = Guarded(lease.point, [&] {
+    const auto merge = [&] {
       const uint64_t samples = run->Merge(lease, *open, std::move(report));
       samples_.fetch_add(static_cast<double>(samples), std::memory_order_relaxed);
       return absl::OkStatus();
-    });
+    };
+    // A local executor stops the run itself.
+    absl::Status merged = lease.local ? merge() : Guarded(lease.point, merge);
     is_finished = merged.ok() && open->fold().finished();
     if (is_finished) {
       open->RequestStop();

@@ -30,7 +30,8 @@ ProcessOptions ClientCommand(const TemporaryFolder& home, Words words);
 
 // What a figure prints on standard error: in a new home, matplotlib lists the fonts, and says so if
 // it takes long.
-inline const auto kQuiet = testing::MatchesRegex("(Matplotlib is building the font cache.*\n)?");
+inline const auto kQuiet =
+    testing::MatchesRegex("(Matplotlib is building the font cache[^\n]*\n)?");
 
 // A server that has started, and clients of it: `ballpiston WORDS... --server ADDRESS`.
 class TestServer : public ServerProcess {

@@ -7,10 +7,10 @@ set -euo pipefail
 build=$1
 
 work=$(mktemp -d)
-trap '{ "$work/prefix/bin/ballpiston" server stop; rm -rf "$work"; } &>/dev/null || true' EXIT
 prefix=$work/prefix
 unset "${!BALLPISTON_@}"
-export HOME=$work XDG_STATE_HOME=$work/state
+export HOME=$work XDG_STATE_HOME=$work/state XDG_CONFIG_HOME=$work/config
+trap '{ "$prefix/bin/ballpiston" server stop; rm -rf "$work"; } &>/dev/null || true' EXIT
 mkdir "$XDG_STATE_HOME"
 
 # expect TEXT COMMAND: the command's output has to contain the text.

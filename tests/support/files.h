@@ -29,7 +29,8 @@ inline void WriteFile(const std::string& path, const std::string& text) {
   EXPECT_TRUE(file) << path;
 }
 
-// Permissions, and the bits before them. A new folder inherits the set-group-ID bit: left out.
+// Permissions, and the bits before them without the set-group-ID bit, which a new folder may
+// inherit.
 inline mode_t ModeOf(const std::string& path) {
   struct stat found {};
   EXPECT_EQ(stat(path.c_str(), &found), 0) << path;

@@ -68,7 +68,10 @@ TEST(InterruptsDeathTest, TheProgramEndsWhenNoThreadIsLeft) {
   ExpectInterrupted(
       [] {
         Interrupts interrupts;
-        const Interrupts::Scope scope(&interrupts, [] { std::cerr << "farewell"; });
+        const Interrupts::Scope scope(&interrupts, [] {
+          std::cerr << "farewell";
+          SleepForEver();
+        });
         pthread_attr_t attributes;
         pthread_attr_init(&attributes);
         pthread_attr_setstacksize(&attributes, size_t{1} << 60);
