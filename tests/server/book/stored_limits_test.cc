@@ -78,6 +78,8 @@ TEST_F(StoredLimitsTest, ResultsExpireAndTheSpecificationStays) {
   const absl::Time end = absl::FromUnixSeconds(before.end_time().seconds());
   EXPECT_NEAR(static_cast<double>(before.expire_time().seconds() - before.end_time().seconds()),
               30 * 86400, 1);
+  EXPECT_EQ(book_->CountExpiring(end), 0);
+  EXPECT_EQ(book_->CountExpiring(end + 29 * kDay), 1);
   book_->KeepLimits(end + 29 * kDay);
   EXPECT_EQ(PointsOf(id), 3u);
   book_->KeepLimits(end + 30 * kDay + absl::Seconds(2));
