@@ -546,11 +546,10 @@ std::vector<Verb> AllVerbs() {
       {"export",
        "write the estimates of many jobs to one file",
        "A row for each estimate of each point, with the job, its principal, labels, seed, "
-       "precision, "
-       "engine version and parameters. Without JOB and --label: of all jobs, for an administrator "
-       "also those of other users. A job whose column 'continues' names another one contains its "
-       "samples: do not average the two. Needs Python with the package ballpiston, and for "
-       ".parquet pandas and pyarrow. Prints the path of the file.",
+       "precision, engine version and parameters. Without JOB and --label: of all jobs, for an "
+       "administrator also those of other users. A job whose column 'continues' names another one "
+       "contains its samples: do not average the two. Needs Python with the package ballpiston, "
+       "and for .parquet pandas and pyarrow. Prints the path of the file.",
        {{Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kAny}},
        With({&kTableFile, &kSelection, &kServer}),
        {"export --label run=7 --out run7.csv", "export ID1 ID2 --out two.parquet"},

@@ -63,7 +63,8 @@ class CallObserver {
 
   const prometheus::Collectable& metrics() const { return registry_; }
 
-  // Of the API. A call is in progress until gRPC has sent its answer.
+  // Counts the calls of the API, but not those of health and reflection. A call is in progress
+  // until gRPC has sent its answer.
   Activity& activity() { return activity_; }
 
  private:

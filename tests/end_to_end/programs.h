@@ -28,8 +28,8 @@ inline const Words kEndlessQuestion =
 // `ballpiston WORDS...`
 ProcessOptions ClientCommand(const TemporaryFolder& home, Words words);
 
-// What a figure prints on standard error: in a new home, matplotlib lists the fonts, and says so if
-// it takes long.
+// A figure prints nothing on standard error, but matplotlib may print one line: that it builds its
+// list of fonts, which a new home folder does not have.
 inline const auto kQuiet =
     testing::MatchesRegex("(Matplotlib is building the font cache[^\n]*\n)?");
 

@@ -88,7 +88,7 @@ def _fits_of_series(
     law = {"model": "power law", "b": plain.coefficients[1], "b_error": plain.errors[1]}
     law |= {"chi_squared": plain.chi_squared, "degrees_of_freedom": plain.freedom}
     found = [head | law]
-    noise = random.standard_normal((synthetic, len(x)))  # the noise only: the fit removes the power law
+    noise = random.standard_normal((synthetic, len(x)))  # a fit removes the power law
     chi_of_noise, best_of_noise = _chi_squared(power_law, error, noise)[:, 0], best_of(noise)
     chi = best_of(y / error)
     powers = np.array([_chi_squared(_terms(x, p)[0], error, y / error).min() for p in _POWERS])
