@@ -258,7 +258,7 @@ statistical_error,own_error,bias_resolved
 
 def test_a_resolved_bias_is_part_of_the_expected_error() -> None:
     data = programs.read_table(MEASUREMENTS)
-    step, lanes = (each.part for each in speed_accuracy.curves_of(data, "mean-free-time", 64))
+    step, lanes = (runs for runs, *_ in speed_accuracy.curves_of(data, "mean-free-time", 64))
     biases = [speed_accuracy.resolved_bias(runs) for runs in (step, lanes)]
     assert biases == [(0.4, 0.03), (0, 0.03)]
     error, error_of_error = speed_accuracy.expected_error(step, *biases[0])

@@ -10,13 +10,10 @@ Time on two cores: quick 1 s, default 10 s, full 1 min.
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import ENERGIES, RHO, first_hits
+from ballpiston.figures.parts.asking import ENERGIES, RHO, Client, Numbers, answer
 from ballpiston.figures.parts.tables import Table, Tables, distinct, histograms, rows, stacked
-from ballpiston.parameter_lists import Numbers
 
 EFFORT = {
     "quick": {"samples": 20_000, "merged": 40},
@@ -40,7 +37,8 @@ def measure(
     """Histograms with wider bins: `merged` of the server's 1000 bins are one bin of the picture.
     Fewer samples need wider bins; otherwise the noise hides the deviation. `samples` are the first
     hits of each panel."""
-    result = first_hits(client, rho, delta, epsilon, exponent, samples, seed)
+    question = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
+    result = answer(client, "first-hit", samples=samples, seed=seed, **question)
     return {"ingoing-law": merge(rows(histograms(result), name="alpha"), merged)}
 
 
@@ -69,7 +67,7 @@ def _merged(bins: Table, keys: tuple[str, ...], merged: int) -> Table:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Of several exponents only the first one."""
     data = tables["ingoing-law"]
     data = rows(data, exponent=data["exponent"][0])

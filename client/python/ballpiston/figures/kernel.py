@@ -9,13 +9,10 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO
+from ballpiston.figures.parts.asking import RHO, Client, Numbers
 from ballpiston.figures.parts.tables import Table, Tables, rows, stacked
-from ballpiston.parameter_lists import Numbers
 
 EFFORT = {"quick": {"collisions": 1e4, "bins": 8}, "full": {"collisions": 3e6, "bins": 40}}
 
@@ -88,7 +85,7 @@ def _densities_at(energy: float, collisions: Table, bins: int) -> dict[str, Any]
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """One panel for each energy before the collision."""
     energies = style.series(tables["kernel-exact"], "epsilon", "ε")
     lines = (len(energies) + 1) // 2

@@ -16,11 +16,9 @@ The program `slow_pistons` measures them. Time on one core: quick 5 s, default 2
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
-from ballpiston.figures.parts.asking import RHO
+from ballpiston.figures.parts.asking import RHO, Client, Numbers, number_list
 from ballpiston.figures.parts.programs import table_of
 from ballpiston.figures.parts.tables import (
     FloatArray,
@@ -31,7 +29,6 @@ from ballpiston.figures.parts.tables import (
     stacked,
     table,
 )
-from ballpiston.parameter_lists import Numbers, number_list
 
 EFFORT: dict[str, dict[str, Any]] = {"quick": {"samples": 2048}, "full": {"samples": 131_072}}
 
@@ -128,7 +125,7 @@ def _growth(windows: Table, part: str) -> fits.Fit:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Both panels."""
     whole = tables["logarithm"]
     growth = f"growth beyond 8, δ = {whole['delta'][0]:g}"

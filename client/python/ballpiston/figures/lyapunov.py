@@ -14,11 +14,9 @@ import math
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
-from ballpiston.figures.parts.asking import RHO, answer, mean_free_times
+from ballpiston.figures.parts.asking import RHO, Client, answer, mean_free_times
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, pick, rows, table
 from ballpiston.figures.parts.tangent_growth import second_exponent
 from ballpiston.parameter_lists import Numbers, number_list
@@ -116,7 +114,7 @@ def laws(whole: Table) -> Table:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Both panels."""
     figure, (left, right) = style.panels((960, 480), 1, 2, ("λ$_2$τ", "λ$_2$τ - ln τ"))
     found, curve = tables["lyapunov"], tables["lyapunov-curve"]

@@ -14,13 +14,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import oscillation, style
-from ballpiston.figures.parts.asking import ENERGIES, RHO, divergences, first_hits
+from ballpiston.figures.parts.asking import ENERGIES, RHO, Client, Numbers, answer, divergences
 from ballpiston.figures.parts.tables import Table, Tables, distinct, pick, rows, stacked
-from ballpiston.parameter_lists import Numbers
 
 EFFORT: dict[str, dict[str, Any]] = {
     "quick": {"delta": "0.1:0.325:16:log", "samples": 30_000, "synthetic": 20},
@@ -41,7 +38,8 @@ def measure(
 ) -> Tables:
     """`samples` are the first hits of each point, `synthetic` the repetitions that calibrate a
     probability."""
-    result = first_hits(client, rho, delta, epsilon, exponent, samples, seed)
+    question = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
+    result = answer(client, "first-hit", samples=samples, seed=seed, **question)
     points = excess(divergences(result))
     return {
         "markov-test-excess": points,
@@ -141,7 +139,7 @@ def _top(x: Any, y: Any, i: int) -> float:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """One panel for each exponent."""
     data = tables["markov-test-excess"]
     exponents = distinct(data["exponent"])

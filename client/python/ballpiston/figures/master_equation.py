@@ -11,13 +11,11 @@ Time on two cores: quick 1 s, default 10 s, full 2 min.
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, answer, first, in_mean_free_times
+from ballpiston.figures.parts.asking import RHO, Client, answer, in_mean_free_times
 from ballpiston.figures.parts.tables import Table, Tables, distinct, histograms, rows, stacked
-from ballpiston.parameter_lists import Numbers
+from ballpiston.parameter_lists import Numbers, number_list
 
 EFFORT = {"quick": {"samples": 20_000}, "full": {"samples": 10_000_000}}
 
@@ -47,7 +45,7 @@ def measure(
 
     # In units of the mean free time, the times and the law of the jump process are the same at
     # every delta.
-    jumps = law("markov", first("delta", delta))
+    jumps = law("markov", number_list("delta", delta)[0])
     return {"master-equation": stacked([law("billiard", delta), jumps])}
 
 
@@ -71,7 +69,7 @@ def beside_exact(bins: Table) -> Table:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Six times for each start energy."""
     data = tables["master-equation"]
     series = distinct(zip(data["model"], data["delta"]))

@@ -14,7 +14,6 @@ import re
 from typing import Any
 
 from matplotlib.colors import LinearSegmentedColormap, LogNorm
-from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from ballpiston.figures.parts import style
@@ -94,7 +93,7 @@ def counts(report: str) -> Table:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """One cell for each situation and method."""
     data = tables["stability"]
     sections, cases = distinct(data["section"]), distinct(data["row"])

@@ -97,13 +97,8 @@ def histograms(result: Result) -> Table:
 
 def closed_forms(forms: ClosedForms, *names: str) -> Table:
     """One row for each pair or, if a name has a value for each energy, for each pair and energy."""
-    columns = [forms[name] for name in names]
-    shape = np.broadcast_shapes(*(_as_matrix(column).shape for column in columns))
-    return {n: np.broadcast_to(_as_matrix(c), shape).ravel() for n, c in zip(names, columns)}
-
-
-def _as_matrix(column: FloatArray) -> FloatArray:
-    return column[:, np.newaxis] if column.ndim == 1 else column
+    matrices = [forms[name].reshape(len(forms), -1) for name in names]
+    return dict(zip(names, map(np.ravel, np.broadcast_arrays(*matrices))))
 
 
 def _facts(point: Point) -> dict[str, Any]:
