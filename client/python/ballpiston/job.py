@@ -133,7 +133,7 @@ class Job:
             ResourceExhausted: the server was busy for two minutes. The job goes on.
         """
         screen = progress_on_screen(progress)
-        if self.answered_from_store and screen.is_visible:
+        if self.answered_from_store:
             when = f", computed {self.ended:%Y-%m-%d %H:%M} UTC" if self.ended else ""
             screen.note(f"answered from the store: {self.name}{when} (fresh=True computes anew)")
         try:

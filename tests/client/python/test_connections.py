@@ -20,7 +20,7 @@ from ballpiston.call_token import Token
 from ballpiston.channel_security import ChannelSecurity, check_security
 from ballpiston.connection_hint import connection_hint
 from ballpiston.error_details import Details, details_of, error_of
-from ballpiston.private_server import find_private_server
+from ballpiston.private_server import find_program
 from ballpiston.server_address import grpc_target, literal_address
 from ballpiston.settings import address_and_security, home_folder
 
@@ -204,7 +204,7 @@ def test_no_program_and_no_server_says_what_to_install(
     monkeypatch.setattr("ballpiston.private_server._program_beside_package", lambda: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(ballpiston.NoPrivateServer, match="install the package ballpiston"):
-        find_private_server()
+        find_program()
 
 
 def test_the_private_servers_address_is_utf_8_in_every_locale(home: Home, tmp_path: Path) -> None:
@@ -212,8 +212,8 @@ def test_the_private_servers_address_is_utf_8_in_every_locale(home: Home, tmp_pa
     script.write_bytes("#!/bin/sh\necho unix:/ü/s\n".encode())
     script.chmod(0o700)
     program = (
-        "import sys; from ballpiston.private_server import PrivateServer\n"
-        "print(ascii(PrivateServer(sys.argv[1]).address()))"
+        "import sys; from ballpiston.private_server import private_address\n"
+        "print(ascii(private_address(sys.argv[1])))"
     )
     ascii_only = os.environ | {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
     reader = home.python(program, str(script), env=ascii_only)

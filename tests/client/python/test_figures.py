@@ -29,7 +29,8 @@ from ballpiston.figures import (
     speed_accuracy,
     stability,
 )
-from ballpiston.figures.parts import command, oscillation, programs, style, tables
+from ballpiston.figures import __main__ as command
+from ballpiston.figures.parts import oscillation, programs, style, tables
 from ballpiston.table import write_table
 
 REFERENCE = json.loads(

@@ -12,7 +12,6 @@ import pytest
 
 import ballpiston
 from ballpiston.arrays import by_name
-from ballpiston.fields import shown_once
 from ballpiston.point import measured_text
 
 
@@ -40,16 +39,6 @@ def test_a_loop_over_points_may_ask_for_everything_at_each(first_hits: ballpisto
     for array in (first_hits.samples, *first_hits.parameters.values()):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0
-
-
-def test_values_that_are_read_once_may_have_equal_docs() -> None:
-    class Number:
-        message = 1
-        plus = shown_once(lambda n: n, "A number.")
-        minus = shown_once(lambda n: -n, "A number.")
-
-    number = Number()
-    assert (number.plus, number.minus) == (1, -1)
 
 
 def test_by_name_walks_once_for_each_name(first_hits: ballpiston.Result) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ballpiston.errors import Error, InvalidArgument
 from ballpiston.figures.parts.tables import Table
-from ballpiston.private_server import find_private_server
+from ballpiston.private_server import find_program
 
 
 class ProgramFailed(Error):
@@ -30,7 +30,7 @@ def output_of(program: str, *arguments: str, quiet: bool = False) -> str:
     Raises:
         ProgramFailed: it cannot be started or fails. InvalidUse if it rejects its arguments.
     """
-    beside = Path(find_private_server().program).resolve().parent
+    beside = Path(find_program()).resolve().parent
     hidden = beside.parent / "libexec" / "ballpiston"  # programs that only figures use
     folders = [str(beside), str(hidden), os.environ.get("PATH", "")]
     path = shutil.which(program, path=os.pathsep.join(folders))
