@@ -36,8 +36,8 @@ _REVIVE_SECONDS = 10.0
 
 class Connection:
     """A channel to the server at `address`. `private`: the server is the user's private one, and
-    this program starts it again. `timeout` bounds each single call, in seconds; None: no bound. Safe to
-    share between threads."""
+    the program of this path starts it again. `timeout` bounds each single call, in seconds; None:
+    no bound. Safe to share between threads."""
 
     def __init__(
         self,

@@ -98,15 +98,10 @@ class Home:
         process = self.server_id()
         if process is None:
             return
-        with contextlib.suppress(ProcessLookupError):
-            handle = os.pidfd_open(process)
-            try:
-                os.kill(process, how)
-                poll = select.poll()
-                poll.register(handle, select.POLLIN)
-                assert poll.poll(LIMIT * 1000), f"the server has not ended after {LIMIT} seconds"
-            finally:
-                os.close(handle)
+        with contextlib.suppress(ProcessLookupError), os.fdopen(os.pidfd_open(process)) as handle:
+            os.kill(process, how)
+            ended, _, _ = select.select([handle], [], [], LIMIT)
+            assert ended, f"the server has not ended after {LIMIT} seconds"
 
 
 @pytest.fixture(scope="session")
@@ -150,14 +145,7 @@ FIRST_HITS: dict[str, Any] = {
 }
 
 # Would take hours: tests cancel it.
-ENDLESS: dict[str, Any] = {
-    "experiment": "first-hit",
-    "rho": 0.5296,
-    "delta": 0.01,
-    "epsilon": 0.125,
-    "exponent": 1,
-    "samples": 1e11,
-}
+ENDLESS: dict[str, Any] = {**FIRST_HITS, "delta": 0.01, "exponent": 1, "samples": 1e11}
 
 
 @pytest.fixture

@@ -8,28 +8,18 @@ from __future__ import annotations
 import importlib
 import json
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 import ballpiston
 from ballpiston import figures
-from ballpiston.figures import (
-    gas,
-    hitting_time,
-    ingoing_law,
-    kernel,
-    lyapunov,
-    markov_test,
-    rates,
-    section,
-    speed_accuracy,
-    stability,
-)
 from ballpiston.figures import __main__ as command
+from ballpiston.figures import gas, hitting_time, ingoing_law, kernel, lyapunov, markov_test
+from ballpiston.figures import rates, section, speed_accuracy, stability
 from ballpiston.figures.parts import oscillation, programs, style, tables
 from ballpiston.table import write_table
 
@@ -40,56 +30,39 @@ ROUNDING = 2e-5  # the scripts printed six digits
 SYNTHETIC = 200
 
 
-@pytest.fixture(scope="module")
-def measured() -> dict[str, tables.Tables]:
-    """What the test of a figure has measured, for the test of its picture."""
-    return {}
+def module(name: str) -> Any:
+    return importlib.import_module(f"ballpiston.figures.{name.replace('-', '_')}")
 
 
 def expect_equal(table: tables.Table, reference: dict[str, Any], name: str) -> None:
     """Numbers within rounding; None in the reference is NaN."""
-    for column, values in reference["values"].items():
-        every = table[column]
-        assert len(every) == reference["rows"], name
-        expect_equal_values(every[:: reference["every"]], values, f"{name}: {column}")
+    for column, expected in reference["values"].items():
+        every, where = table[column], f"{name}: {column}"
+        assert len(every) == reference["rows"], where
+        found = every[:: reference["every"]]
+        if found.dtype.kind in "US":
+            assert found.tolist() == expected, where
+            continue
+        numbers = np.array(expected, dtype=float)
+        options: Any = {"rtol": ROUNDING, "atol": 1e-12, "err_msg": where}
+        np.testing.assert_allclose(found.astype(float), numbers, **options)
         if column in reference["sums"]:
             tolerance = ROUNDING * np.nansum(np.abs(every))
-            assert np.nansum(every) == pytest.approx(
-                reference["sums"][column], abs=tolerance
-            ), f"{name}: {column}"
-
-
-def expect_equal_values(values: Any, expected: list[Any], name: str) -> None:
-    if values.dtype.kind in "US":
-        assert values.tolist() == expected, name
-    else:
-        numbers = np.array([np.nan if x is None else x for x in expected], dtype=float)
-        np.testing.assert_allclose(
-            values.astype(float), numbers, rtol=ROUNDING, atol=1e-12, err_msg=name
-        )
+            assert abs(np.nansum(every) - reference["sums"][column]) <= tolerance, where
 
 
 @pytest.mark.parametrize("name", REFERENCE["figures"])
-def test_a_figure_measures_what_its_script_measured(
-    name: str, client: ballpiston.Client, measured: dict[str, tables.Tables]
+def test_a_figure_measures_what_its_script_measured_and_its_texts_are_inside_the_picture(
+    name: str, client: ballpiston.Client
 ) -> None:
     reference = REFERENCE["figures"][name]
-    module = importlib.import_module(f"ballpiston.figures.{name}")
-    measured[name] = module.measure(client, **reference["keywords"])
+    measured = module(name).measure(client, **reference["keywords"])
     for table, expected in reference["tables"].items():
-        expect_equal(measured[name][table], expected, table)
-
-
-@pytest.mark.parametrize("name", REFERENCE["figures"])
-def test_texts_are_inside_the_picture(name: str, measured: dict[str, tables.Tables]) -> None:
-    if name not in measured:
-        pytest.skip("the figure was not measured")
-    expect_texts_inside(importlib.import_module(f"ballpiston.figures.{name}").draw(measured[name]))
+        expect_equal(measured[table], expected, table)
+    expect_texts_inside(module(name).draw(measured))
 
 
 def expect_texts_inside(figure: Any) -> None:
-    from matplotlib.text import Text
-
     figure.draw_without_rendering()
     width, height = figure.bbox.size
     for text in figure.findobj(Text):
@@ -241,9 +214,37 @@ def test_collisions_and_wall_hits_have_the_invariant_density(client: ballpiston.
     expect_texts_inside(section.draw(data))
 
 
+# Every kind of failure has another count, so that the sums show which kinds are counted.
+REPORT = """| case | lanes |
+|:-----|------:|
+| not a count | 5 |
+<details><summary>All counts: the ball alone</summary>
+
+| case | method | starts | wall hits | escapes | negative times | loops | still inward | missed |
+|:-----|:-------|-------:|----------:|--------:|---------------:|------:|-------------:|-------:|
+| cusps | lanes | 4,000 | 120,000 | 0 | 0 | 0 | 0 | - |
+| | lanes, single | 4 | 22 | 1 | 20 | 300 | 4,000 | - |
+| any orbits | lanes | 22 | 440 | 0 | 0 | 0 | 0 | 5 |
+
+</details>
+<details><summary>All counts: the gas</summary>
+
+| case | method | starts | escapes | looked back | missed | phantoms | pistons beyond | worst dE/E |
+|:-----|:-------|-------:|--------:|------------:|-------:|---------:|---------------:|-----------:|
+| any gas | jump process | 16 | 0 | 9 | 1 | 20 | 300 | 7.8e-16 |
+</details>
+"""
+
+
 def test_the_counts_of_failures_are_read_from_the_report() -> None:
-    report = "\n".join(REFERENCE["stability_report"])
-    expect_equal(stability.counts(report), REFERENCE["stability"], "stability")
+    assert {name: column.tolist() for name, column in stability.counts(REPORT).items()} == {
+        "section": ["the ball alone"] * 3 + ["the gas"],
+        "row": [1, 1, 2, 3],
+        "case": ["cusps", "cusps", "any orbits", "any gas"],
+        "method": ["lanes", "lanes, single", "lanes", "jump process"],
+        "starts": [4000, 4, 22, 16],
+        "failures": [0, 4321, 5, 321],
+    }
 
 
 MEASUREMENTS = """rho,delta,epsilon,method,time_step,quantity,samples,wall_hits,work_seconds,value,\
@@ -305,19 +306,6 @@ def test_tables_are_written_with_all_digits(tmp_path: Path) -> None:
     assert text == '# made by a test\nx,name\n0.1,"a, b"\n,c\n'
 
 
-def test_curves_of_one_name_are_chosen_from_a_result() -> None:
-    x = np.array([0.0, 1.0])
-    parts = {"x": x, "value": x, "standard_error": x, "limit": x}
-    profile = SimpleNamespace(name="temperature_profile", time=None, **parts)
-    cumulant = SimpleNamespace(name="charge_cumulant_2_by_window", time=x, **parts)
-    facts = {"parameters": {"hot": 2.0}, "model": "markov", "samples": 3.0}
-    result: Any = [SimpleNamespace(curves=[profile, cumulant], **facts)]
-    chosen = tables.curves(result, "temperature_profile")
-    assert chosen["position"].tolist() == [0, 1]
-    assert "time" not in chosen
-    assert tables.curves(result, "charge_cumulant_2_by_window")["time"].tolist() == [0, 1]
-
-
 def test_a_point_without_a_known_error_is_hollow() -> None:
     axes = style.picture(300, 200).subplots()
     style.error_points(axes, [1, 2, 3], [4, 5, 6], [0.1, np.nan, 0.2], style.BLUE)
@@ -330,21 +318,12 @@ def test_a_point_without_a_known_error_is_hollow() -> None:
 def test_the_same_picture_gives_the_same_file(tmp_path: Path) -> None:
     data = {"cell-3d": {"rho": np.array([0.65]), "delta": np.array([0.08])}}
     data["cell-3d"] |= {"lambda": np.array([0.83]), "eta": np.array([0.1])}
-    module = importlib.import_module("ballpiston.figures.cell_3d")
     files = [tmp_path / "a.svg", tmp_path / "b.svg"]
     for file, box in zip(files, ("standard", "tight")):
         with matplotlib.rc_context({"savefig.bbox": box}):  # of a matplotlibrc
-            style.save(module.draw(data), file)
+            style.save(module("cell_3d").draw(data), file)
     assert files[0].read_bytes() == files[1].read_bytes()
     assert b"heights drawn" in files[0].read_bytes()
-
-
-def test_every_figure_has_its_parts() -> None:
-    for name in figures.names():
-        module = importlib.import_module(f"ballpiston.figures.{name.replace('-', '_')}")
-        assert set(getattr(module, "EFFORT", {})) <= {"quick", "full"}
-        assert callable(module.measure) and callable(module.draw)
-        assert module.__doc__ and not module.__doc__.splitlines()[0].endswith(".")
 
 
 @pytest.mark.parametrize(
@@ -378,13 +357,10 @@ def test_wrong_values_are_named_before_anything_is_measured(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_figure_without_a_folder_is_an_error(capsys: pytest.CaptureFixture[str]) -> None:
-    assert command.main(["cell"]) == 2
-    assert "--out is missing: name a folder" in capsys.readouterr().err
-
-
 def test_every_figure_can_be_edited(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in figures.names():
+        assert set(getattr(module(name), "EFFORT", {})) <= {"quick", "full"}
+        assert not module(name).__doc__.splitlines()[0].endswith(".")
         assert command.main([name, "--edit", "--out", str(tmp_path)]) == 0
         assert f"{name.replace('-', '_')}.py" in capsys.readouterr().out
         with pytest.raises(SystemExit):  # the help of the edited module
@@ -395,13 +371,13 @@ def test_an_edited_module_is_used_and_kept_and_its_data_stay_if_the_picture_fail
     home: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     command.main(["cell", "--edit", "--out", str(tmp_path)])
-    module = tmp_path / "cell.py"
-    edited = module.read_text() + "\n\ndef draw(_):\n    raise ValueError('no picture')\n"
-    module.write_text(edited)
+    own = tmp_path / "cell.py"
+    edited = own.read_text() + "\n\ndef draw(_):\n    raise ValueError('no picture')\n"
+    own.write_text(edited)
     assert command.main(["cell", "--out", str(tmp_path)]) == 2
     error = capsys.readouterr().err
     assert "cell.py, which differs" in error and "no picture" in error
-    assert module.read_text() == edited
+    assert own.read_text() == edited
     assert list(tmp_path.glob("*.csv")) and not list(tmp_path.glob("*.svg"))
 
 
@@ -413,9 +389,11 @@ def test_help_lists_the_variables_of_a_figure(capsys: pytest.CaptureFixture[str]
     assert "--samples VALUE" in text and "by default 200000" in text
 
 
-def test_a_folder_that_cannot_be_made_is_named(
+def test_a_folder_that_is_missing_or_cannot_be_made_is_an_error(
     home: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    assert command.main(["cell"]) == 2
+    assert "--out is missing: name a folder" in capsys.readouterr().err
     file = tmp_path / "file"
     file.touch()
     assert command.main(["cell", "--out", str(file)]) == 2

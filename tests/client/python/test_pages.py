@@ -39,11 +39,6 @@ def dead_links(page: Path, text: str) -> list[str]:
     return dead
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(PROJECT)))
-def test_every_link_leads_to_a_file_and_a_heading(page: Path) -> None:
-    assert dead_links(page, pages.text_of(page)) == []
-
-
 def missing_files(page: Path, text: str) -> list[str]:
     """The paths of files and folders in backquotes that do not exist, neither in the project nor in
     the page's folder. Patterns and placeholders in capitals are no paths."""
@@ -67,8 +62,9 @@ def source_names() -> set[str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(PROJECT)))
-def test_every_path_of_the_project_exists(page: Path) -> None:
-    assert missing_files(page, pages.text_of(page)) == []
+def test_every_link_leads_to_a_heading_and_every_path_to_a_file(page: Path) -> None:
+    text = pages.text_of(page)
+    assert (dead_links(page, text), missing_files(page, text)) == ([], [])
 
 
 @functools.cache

@@ -63,9 +63,8 @@ def draw(tables: Tables) -> style.Figure:
     data = tables["hitting-time"]
     data = rows(data, exponent=data["exponent"][0])
     energies = distinct(data["epsilon"])
-    shared: dict[str, Any] = {"sharex": True, "sharey": "row", "squeeze": False}
     width = max(640, 100 + 320 * len(energies))
-    figure, panels = style.panels((width, 760), 2, len(energies), **shared)
+    figure, panels = style.panels((width, 760), 2, len(energies), **style.SHARED)
     longest = data["t"].max()
     t = np.linspace(0, longest, 200)
     exponential: dict[str, Any] = {"color": style.BLACK, "linewidth": 1.2, "dashes": (6, 4)}

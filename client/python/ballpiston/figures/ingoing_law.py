@@ -73,8 +73,7 @@ def draw(tables: Tables) -> style.Figure:
     data = rows(data, exponent=data["exponent"][0])
     deltas, energies = distinct(data["delta"]), distinct(data["epsilon"])
     size = 760 if len(deltas) < 3 else 300 * len(deltas) + 60, 210 * len(energies) + 120
-    shared: dict[str, Any] = {"sharex": True, "sharey": "row", "squeeze": False}
-    figure, panels = style.panels(size, len(energies), len(deltas), **shared)
+    figure, panels = style.panels(size, len(energies), len(deltas), **style.SHARED)
     for row, epsilon in zip(panels, energies):
         for axes, delta in zip(row, deltas):
             for sigma, sign, colour in _SIGNS:

@@ -38,20 +38,16 @@ def measure(
     forms = client.analytic(rho, delta, epsilon, outgoing_epsilon="0.001:0.499:499")
     energies = forms["epsilon"][0]
     outgoing = np.arange(1, 500) / 1000
-    exact = [
-        {
-            "epsilon": energy,
-            "outgoing": outgoing,
-            "density": kernel / rate,  # W is a density of rates
-        }
+    exact = stacked(  # W is a density of rates
+        {"epsilon": energy, "outgoing": outgoing, "density": kernel / rate}
         for energy, rate, kernel in zip(energies, forms["f"][0], forms["kernel"][0])
-    ]
+    )
     pair = {"rho": rho, "delta": delta, "model": "billiard", "seed": seed}
     names = ("piston_energy", "piston_energy_after")
     sample = client.sample("equilibrium", collisions=collisions, **pair)
     parts = [[part[name].copy() for name in names] for part in sample]
     hits = dict(zip(names, map(np.concatenate, zip(*parts))))
-    return {"kernel-exact": stacked(exact), "kernel-measured": densities(energies, hits, bins)}
+    return {"kernel-exact": exact, "kernel-measured": densities(energies, hits, bins)}
 
 
 def densities(energies: Iterable[float], collisions: Table, bins: int) -> Table:

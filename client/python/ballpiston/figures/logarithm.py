@@ -75,10 +75,13 @@ def measure(
 def excess(windows: Table, part: str) -> tuple[FloatArray, FloatArray]:
     """The difference of a part from its limit, a share of the limit's integral time, and its
     error."""
-    limits = {"all": windows["limit_all"], "idle": windows["limit_idle"]}
-    limits["met"] = limits["all"] - limits["idle"]
-    value = windows[part] - limits[part]
+    value = windows[part] - _limit(windows, part)
     return value / _INTEGRAL_TIME, windows[f"{part}_error"] / _INTEGRAL_TIME
+
+
+def _limit(windows: Table, part: str) -> FloatArray:
+    met: FloatArray = windows["limit_all"] - windows["limit_idle"]
+    return met if part == "met" else windows[f"limit_{part}"]
 
 
 def logarithms_of_delta(whole: Table) -> Table:
@@ -114,9 +117,7 @@ def logarithms_of_window(whole: Table) -> Table:
 def _growth(windows: Table, part: str) -> fits.Fit:
     """The errors are those of increments that are independent of each other. Increments without
     enough events have none, and are left out."""
-    limit = windows["limit_idle"] * (1 if part == "idle" else -1)
-    limit += 0 if part == "idle" else windows["limit_all"]
-    value = np.diff(windows[f"later_{part}"] - limit)
+    value = np.diff(windows[f"later_{part}"] - _limit(windows, part))
     error = np.sqrt(np.maximum(np.diff(windows[f"later_{part}_error"] ** 2), 0))
     measured = error > 0
     shorter = windows["window"][:-1]

@@ -145,7 +145,7 @@ def draw(tables: Tables) -> style.Figure:
     exponents = distinct(data["exponent"])
     across = min(2, len(exponents))
     down = -(-len(exponents) // across)
-    shared: dict[str, Any] = {"sharex": True, "sharey": True, "squeeze": False}
+    shared: dict[str, Any] = style.SHARED | {"sharey": True}
     size = max(640, 540 * across), 420 * down + 40
     figure, panels = style.panels(size, down, across, **shared)
     style.signed_log_axis(panels[0, 0], 2 * data["standard_error"].min())

@@ -54,11 +54,7 @@ def draw(tables: Tables) -> style.Figure:
 
 
 def _draw_rates(axes: Any, spectrum: Table, total: Table) -> None:
-    isolated = [
-        value
-        for name, value in zip(spectrum["name"], spectrum["value"])
-        if name == "spectral_gap" or name.startswith("isolated_rate")
-    ]
+    isolated = spectrum["value"][spectrum["name"] != "relaxation_time"]
     bottom, top = total["f"].min(), total["f"].max()
     axes.axvspan(bottom, top, color=style.REACH)
     axes.plot(total["f"], total["epsilon"], color=style.BLUE, linewidth=2)

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from ballpiston.client import Client as Client
-from ballpiston.figures.parts.tables import Table, table
+from ballpiston.fields import column
+from ballpiston.figures.parts.tables import Table
 from ballpiston.parameter_lists import Numbers as Numbers, Shapes as Shapes
 from ballpiston.parameter_lists import number_list as number_list, shape_list
 from ballpiston.result import Result
@@ -37,14 +38,10 @@ def answer(client: Client, experiment: str, **question: Any) -> Result:
 def divergences(result: Result) -> Table:
     """The relative entropy of the ingoing law of first hits at each point, with its noise floor:
     its mean, and the standard deviation `noise_error`, if the two laws were equal."""
-    return table(
-        {name: point.parameters[name] for name in ("delta", "epsilon", "exponent")}
-        | {
-            field: getattr(point.message.kl_divergence, field)
-            for field in ("value", "standard_error", "noise_floor", "noise_error")
-        }
-        for point in result
-    )
+    found = {name: result.parameters[name] for name in ("delta", "epsilon", "exponent")}
+    for field in ("value", "standard_error", "noise_floor", "noise_error"):
+        found[field] = column((m.kl_divergence for m in result.messages), field)
+    return found
 
 
 def mean_free_times(client: Client, rho: Numbers, delta: Numbers) -> dict[float, float]:

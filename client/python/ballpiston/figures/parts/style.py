@@ -28,6 +28,9 @@ ENERGY = LinearSegmentedColormap.from_list(
     "energy", ["#2b3a9e", "#6a5acd", "#c4243a", "#f28a1c", "#f5d000"]
 )
 
+# Options of `panels`: the panels of a row have one vertical axis, all have one horizontal axis.
+SHARED: dict[str, Any] = {"sharex": True, "sharey": "row", "squeeze": False}
+
 _PIXELS = 100.0  # of an inch; sizes of pictures are in pixels
 _SHEET = Path(__file__).with_name("ballpiston.mplstyle")
 
