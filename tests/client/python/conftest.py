@@ -8,7 +8,6 @@ variable BALLPISTON_BIN names, and the package from PYTHONPATH:
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import select
 import signal
@@ -76,13 +75,10 @@ class Home:
             [program, *words], check=True, stdout=subprocess.PIPE, text=True, timeout=LIMIT
         ).stdout
 
-    def command_json(self, *words: str) -> Any:
-        return json.loads(self.command(*words, "--format", "json"))
-
     def python(self, program: str, *arguments: str, **options: Any) -> subprocess.Popen[str]:
         """Another process that runs a Python program."""
         command = [sys.executable, "-c", program, *arguments]
-        return subprocess.Popen(command, stdout=-1, stderr=-1, text=True, **options)
+        return subprocess.Popen(command, text=True, **{"stdout": -1, "stderr": -1} | options)
 
     def server_id(self) -> int | None:
         """The process id of the server; None if none runs. The file keeps the id of a server that

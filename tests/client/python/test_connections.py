@@ -238,19 +238,6 @@ def test_hints_say_what_a_user_can_do() -> None:
     assert connection_hint("host:1", ChannelSecurity(), "connection refused") == ""
 
 
-def make_certificate(folder: Path) -> None:
-    """server.pem, which is its own authority, and server.key."""
-    subprocess.run(
-        "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 1 "
-        "-subj /CN=localhost -addext subjectAltName=DNS:localhost "
-        "-keyout server.key -out server.pem".split(),
-        cwd=folder,
-        check=True,
-        stderr=subprocess.DEVNULL,
-    )
-    (folder / "server.key").chmod(0o600)
-
-
 @contextmanager
 def serving(home: Home, folder: Path, flags: str) -> Iterator[str]:
     """The address of a server; the file ada.token has a token for it."""
@@ -293,7 +280,14 @@ def test_on_the_loopback_only_the_servers_user_needs_no_token(
 
 
 def test_tls_and_a_token_reach_a_server_that_wants_them(home: Home, tmp_path: Path) -> None:
-    make_certificate(tmp_path)
+    # The certificate is its own authority.
+    openssl = (
+        "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 1 "
+        "-subj /CN=localhost -addext subjectAltName=DNS:localhost "
+        "-keyout server.key -out server.pem"
+    )
+    subprocess.run(openssl.split(), cwd=tmp_path, check=True, stderr=subprocess.DEVNULL)
+    (tmp_path / "server.key").chmod(0o600)
     ca, token_file = str(tmp_path / "server.pem"), str(tmp_path / "ada.token")
     with serving(home, tmp_path, "--tls-certificate server.pem --tls-key server.key") as address:
         with ballpiston.connect(address, ca=ca, token_file=token_file, timeout=LIMIT) as client:

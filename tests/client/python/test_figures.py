@@ -306,6 +306,13 @@ def test_tables_are_written_with_all_digits(tmp_path: Path) -> None:
     assert text == '# made by a test\nx,name\n0.1,"a, b"\n,c\n'
 
 
+def test_curves_of_one_name_are_chosen_from_a_result(client: ballpiston.Client) -> None:
+    gas = {"rho": 0.53, "delta": 0.1, "cells": 2, "hot": 1.5, "cold": 0.5, "model": "markov"}
+    result = client.run("gas-conduction", **gas, samples=4000)
+    assert len(result[0].curves) > 1
+    assert set(tables.curves(result, "temperature_profile")["name"]) == {"temperature_profile"}
+
+
 def test_a_point_without_a_known_error_is_hollow() -> None:
     axes = style.picture(300, 200).subplots()
     style.error_points(axes, [1, 2, 3], [4, 5, 6], [0.1, np.nan, 0.2], style.BLUE)
@@ -400,30 +407,20 @@ def test_a_folder_that_is_missing_or_cannot_be_made_is_an_error(
     assert f"--out: cannot write {file}: File exists" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    "script,text,code",
-    [
-        ("", "method_comparison: not found beside", 4),
-        ("echo no room >&2; exit 1", "no room", 4),
-        ("echo wrong value >&2; exit 2", "wrong value", 2),
-    ],
-)
 def test_a_program_that_is_missing_or_fails_is_an_error(
-    script: str,
-    text: str,
-    code: int,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capfd: pytest.CaptureFixture[str],
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("BALLPISTON_PROGRAM", str(tmp_path / "ballpiston"))
     monkeypatch.setenv("PATH", "/no/such/folder")
-    if script:
-        program = tmp_path / "method_comparison"
-        program.write_text(f"#!/bin/sh\n{script}\n")
+    words = ["speed-accuracy", "--out", str(tmp_path)]
+    assert command.main(words) == 4
+    assert "method_comparison: not found beside" in capfd.readouterr().err
+    program = tmp_path / "method_comparison"
+    for status, code in ((1, 4), (2, 2)):
+        program.write_text(f"#!/bin/sh\necho because {status} >&2; exit {status}\n")
         program.chmod(0o700)
-    assert command.main(["speed-accuracy", "--out", str(tmp_path)]) == code
-    assert text in capfd.readouterr().err
+        assert command.main(words) == code
+        assert f"because {status}" in capfd.readouterr().err
 
 
 # The client's functions that figures use

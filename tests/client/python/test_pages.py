@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 import inspect
+import json
 import re
 import subprocess
 from pathlib import Path
@@ -125,7 +126,7 @@ def is_quick(home: Home, command: Command) -> bool:
             place = rest.index("--format")
             del rest[place : place + 2]
         limit = QUICK_IF_SHOWN if command.shown else QUICK
-        return bool(home.command_json("plan", *rest)["work"] < limit)
+        return bool(json.loads(home.command("plan", *rest, "--format", "json"))["work"] < limit)
     if verb == "trace":
         return int(rest[rest.index("--events") + 1]) <= 1000
     return verb in ["analytic", "plan"]

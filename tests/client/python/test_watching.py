@@ -120,20 +120,13 @@ def test_a_terminal_shows_a_bar_unless_it_is_silenced(hidden: str, home: Home) -
         "import ballpiston\n"
         f"{CONNECT}.run(**{ {**FIRST_HITS, 'fresh': True} }, progress=sys.argv[1] == 'bar')"
     )
-    assert "4/4 points" in on_a_terminal(program, "bar")
-    assert on_a_terminal(program, "silent") == ""
-
-
-def on_a_terminal(program: str, argument: str) -> str:
-    """What the program writes to a terminal."""
-    here, there = os.openpty()
-    command = [sys.executable, "-c", program, argument]
-    actions = [(os.POSIX_SPAWN_DUP2, there, 1), (os.POSIX_SPAWN_DUP2, there, 2)]
-    process = os.posix_spawn(sys.executable, command, os.environ, file_actions=actions)
-    os.close(there)
-    text = text_of(here)
-    assert os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]) == 0, text
-    return text
+    for progress, text in (("bar", "4/4 points"), ("silent", "")):
+        here, there = os.openpty()
+        process = home.python(program, progress, stdout=there, stderr=there)
+        os.close(there)
+        written = text_of(here)
+        assert process.wait(LIMIT) == 0, written
+        assert text in written and bool(text) == bool(written)
 
 
 def text_of(terminal: int) -> str:

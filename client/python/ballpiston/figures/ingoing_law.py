@@ -13,7 +13,8 @@ import numpy as np
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import ENERGIES, RHO, Client, Numbers, answer
-from ballpiston.figures.parts.tables import Table, Tables, distinct, histograms, rows, stacked
+from ballpiston.figures.parts.tables import Table, Tables, distinct, groups
+from ballpiston.figures.parts.tables import histograms, rows, stacked
 
 EFFORT = {
     "quick": {"samples": 20_000, "merged": 40},
@@ -46,8 +47,7 @@ def merge(bins: Table, merged: int) -> Table:
     """Histograms with `merged` neighbouring bins in one. Densities are means over a bin; `error` is
     the standard error; that of an empty bin is the error of the count expected from h^(1)."""
     keys = ("delta", "epsilon", "exponent", "sigma")
-    found = distinct(zip(*(bins[name] for name in keys)))
-    return stacked(_merged(rows(bins, **dict(zip(keys, key))), keys, merged) for key in found)
+    return stacked(_merged(part, keys, merged) for _, part in groups(bins, *keys))
 
 
 def _merged(bins: Table, keys: tuple[str, ...], merged: int) -> Table:

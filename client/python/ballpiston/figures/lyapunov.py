@@ -140,13 +140,10 @@ def _above_logarithm(part: Table, name: str) -> FloatArray:
 def _draw_growth(axes: Any, found: Table, curve: Table, limit: float) -> None:
     tau = np.geomspace(found["tau"].min() / 2, found["tau"].max() * 2, 100)
     axes.plot(tau, np.log(tau) + limit, ":", color=style.BLACK, label=f"ln τ + {limit:.3f}")
-    is_shown = curve["tau"] < tau[-1]
-    axes.plot(
-        curve["tau"][is_shown], curve["computed"][is_shown], color=style.BLACK, label="computed"
-    )
-    style.error_points(
-        axes, found["tau"], found["value"], found["value_error"], style.BLUE, "billiard"
-    )
+    shown = pick(curve, curve["tau"] < tau[-1])
+    axes.plot(shown["tau"], shown["computed"], color=style.BLACK, label="computed")
+    measured = found["tau"], found["value"], found["value_error"]
+    style.error_points(axes, *measured, style.BLUE, "billiard")
     axes.set_xscale("log")
     axes.set(xlabel="mean free time τ", xlim=(tau[0], tau[-1]))
     axes.legend(loc="upper left")

@@ -17,7 +17,7 @@ import numpy as np
 
 from ballpiston.figures.parts import oscillation, style
 from ballpiston.figures.parts.asking import ENERGIES, RHO, Client, Numbers, answer, divergences
-from ballpiston.figures.parts.tables import Table, Tables, distinct, pick, rows, stacked
+from ballpiston.figures.parts.tables import Table, Tables, distinct, groups, pick, rows, stacked
 
 EFFORT: dict[str, dict[str, Any]] = {
     "quick": {"delta": "0.1:0.325:16:log", "samples": 30_000, "synthetic": 20},
@@ -64,7 +64,7 @@ def decay(points: Table) -> Table:
     the first octave, if that mean is above 3 standard errors."""
     largest = points["delta"].max()
     found = []
-    for (epsilon, exponent), series in oscillation.series_of(points):
+    for (epsilon, exponent), series in groups(points, "epsilon", "exponent"):
         # With the factor a delta at the border of two octaves stays in its octave despite rounding.
         octave = np.floor(np.log2(largest / series["delta"]) * (1 - 1e-9)).astype(int)
         count = np.bincount(octave)
@@ -94,7 +94,7 @@ def maxima(points: Table) -> Table:
     log(delta) or in 1/delta are constant if the oscillation is periodic in that variable. The
     equilibrium law, n = 1, is left out."""
     found: list[dict[str, Any]] = []
-    for (epsilon, exponent), series in oscillation.series_of(points):
+    for (epsilon, exponent), series in groups(points, "epsilon", "exponent"):
         falling = pick(series, np.argsort(-series["delta"], kind="stable"))
         x, y = np.log(falling["delta"]), falling["excess"]
         highest = () if exponent == 1 else _highest_points(y, falling["standard_error"])

@@ -28,7 +28,7 @@ from matplotlib.ticker import EngFormatter
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO
 from ballpiston.figures.parts.programs import table_of
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, pick, rows
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, groups, pick, rows
 
 EFFORT = {"quick": {"seconds": 0.03}, "full": {"seconds": 10.0}}
 
@@ -80,12 +80,12 @@ def curves_of(data: Table, quantity: str, fewest_samples: int = 1) -> list[style
     data = rows(data, quantity=quantity)
     data = pick(data, data["samples"] >= fewest_samples)
     found = []
-    for method, step in distinct(zip(data["method"], data["time_step"])):
+    for (method, step), runs in groups(data, "method", "time_step"):
         title, colour = _METHODS.get(method, ("", ""))
         if step > 0:
             title, colour = f"Δt = {style.power_text(step)}", _STEPS(0.25 - 0.18 * np.log10(step))
         if title:
-            found.append((rows(data, method=method, time_step=step), colour, title))
+            found.append((runs, colour, title))
     return found
 
 

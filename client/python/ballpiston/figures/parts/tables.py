@@ -1,6 +1,6 @@
 """Tables: named columns of equal length. A figure's data are tables by name of file."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -47,6 +47,12 @@ def rows(whole: Table, **wanted: Any) -> Table:
 def distinct(column: Iterable[Any]) -> list[Any]:
     """The values, in the order of their first appearance."""
     return list(dict.fromkeys(column))
+
+
+def groups(whole: Table, *names: str) -> Iterator[tuple[tuple[Any, ...], Table]]:
+    """Each combination of values of these columns, and its rows."""
+    for values in distinct(zip(*(whole[name] for name in names))):
+        yield values, rows(whole, **dict(zip(names, values)))
 
 
 def estimates(result: Result) -> Table:
