@@ -180,7 +180,7 @@ def test_few_gaps_have_no_error_and_no_gap_has_no_rate() -> None:
 def test_first_hits_at_the_ends_of_the_energy_are_drawn_with_errors(
     client: ballpiston.Client,
 ) -> None:
-    data = hitting_time.measure(client, delta=0.2, epsilon="0,0.5", samples=200)
+    data = hitting_time.measure(client, delta="0.2,0.3", epsilon="0,0.5", samples=200)
     inexact = tables.pick(data["hitting-time"], data["hitting-time"]["t"] > 0)
     assert (inexact["error"] > 0).all()
     expect_texts_inside(hitting_time.draw(data))
