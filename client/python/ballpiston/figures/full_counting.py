@@ -99,9 +99,8 @@ def _powers(x: FloatArray) -> FloatArray:
 
 def transient(time: FloatArray) -> FloatArray:
     """What exp(-t) in a cumulant adds to [c_n(2 t) - c_n(t)]/t."""
-    finite = np.where(np.isfinite(time), time, 1.0)
-    added: FloatArray = (np.exp(-2 * finite) - np.exp(-finite)) / finite
-    return np.where(np.isfinite(time), added, 0.0)
+    added: FloatArray = (np.exp(-2 * time) - np.exp(-time)) / time
+    return added
 
 
 def extrapolated(found: Table, hot: float, cold: float) -> Table:

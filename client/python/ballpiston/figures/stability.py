@@ -18,7 +18,7 @@ from matplotlib.patches import Rectangle
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.programs import output_of
-from ballpiston.figures.parts.tables import Table, Tables, distinct, rows, table
+from ballpiston.figures.parts.tables import Table, Tables, distinct, groups, rows, table
 from ballpiston.progress import has_terminal
 
 EFFORT: dict[str, dict[str, Any]] = {"quick": {}, "full": {"all_starts": True}}
@@ -106,8 +106,7 @@ def draw(tables: Tables) -> style.Figure:
     for section in sections:
         axes.text(-0.6, line, section, ha="right", va="center", fontsize=11, fontweight="bold")
         line += 1
-        for number in distinct(rows(data, section=section)["row"]):
-            part = rows(data, row=number)
+        for _, part in groups(rows(data, section=section), "row"):
             ticks[line] = part["case"][0]
             _draw_cells(axes, part, line)
             line += 1
