@@ -17,9 +17,10 @@ import ballpiston
 from ballpiston.errors import ResourceExhausted, Unavailable
 from ballpiston.progress import Bar, Progress, _TqdmBar, has_terminal
 from ballpiston.v1 import ensemble_pb2
-from ballpiston.watch import Attachments, ReattachPace, watch_job
+from ballpiston.watch import Attachments, watch_job
 
 
+JOB = "ensembleJobs/1"
 CONNECT = f"ballpiston.connect(timeout={LIMIT})"
 
 
@@ -184,11 +185,11 @@ def test_the_time_left_does_not_count_the_time_in_the_queue(
 
 
 def test_pauses_double_until_the_server_is_heard() -> None:
-    pace = ReattachPace(first=1, longest=4, give_up_after=1000)
+    pace = Attachments(JOB, first=1, longest=4, give_up_after=1000)
     for expected in (1, 2, 4, 4):
         pause = pace.next_pause(now=0)
         assert pause is not None and expected <= pause <= 1.25 * expected
-    pace.heard()
+    pace.handle(update("", RUNNING))
     pause = pace.next_pause(now=10)
     assert pause is not None and pause <= 1.25
     pause = pace.next_pause(now=10, least=10)  # as the server asks
@@ -197,12 +198,12 @@ def test_pauses_double_until_the_server_is_heard() -> None:
 
 
 def test_a_watch_gives_up_after_the_configured_time() -> None:
-    pace = ReattachPace(first=1, longest=4, give_up_after=10)
+    pace = Attachments(JOB, first=1, longest=4, give_up_after=10)
     for lost in (100, 200):  # the first time after a long sleep of this process
         assert pace.next_pause(now=lost) is not None
         assert pace.next_pause(now=lost + 5) is not None
         assert pace.next_pause(now=lost + 9.5) is None
-        pace.heard()
+        pace.handle(update("", RUNNING))
 
 
 class ScriptedServer:
@@ -231,23 +232,23 @@ def test_a_watch_passes_the_last_resume_token_on() -> None:
     server: Any = ScriptedServer(
         [update("a", RUNNING), update("b", RUNNING)], [], [update("c", SUCCEEDED)]
     )
-    at_once = ReattachPace(first=0, longest=0, give_up_after=LIMIT)
-    job = watch_job(server, "ensembleJobs/1", Progress(None), at_once)
+    at_once = Attachments(JOB, first=0, longest=0, give_up_after=LIMIT)
+    job = watch_job(server, at_once, Progress(None))
     assert job.state == SUCCEEDED
     assert server.tokens == ["", "b", "b"]
 
 
 def test_a_watch_that_gives_up_says_why() -> None:
     server: Any = ScriptedServer()
-    hasty = ReattachPace(first=0.001, longest=0, give_up_after=0)
+    hasty = Attachments(JOB, first=0.001, longest=0, give_up_after=0)
     with pytest.raises(Unavailable, match="gave up watching after 0 s.*ended the watch before"):
-        watch_job(server, "ensembleJobs/1", Progress(None), hasty)
+        watch_job(server, hasty, Progress(None))
 
 
 def test_a_watch_waits_for_a_busy_server() -> None:
     busy = ResourceExhausted("too many", code="RESOURCE_EXHAUSTED", reason="TOO_MANY_STREAMS")
-    assert Attachments("ensembleJobs/1").pause_after(busy) > 0
-    hasty = Attachments("ensembleJobs/1", ReattachPace(give_up_after=0))
+    assert Attachments(JOB).pause_after(busy) > 0
+    hasty = Attachments(JOB, give_up_after=0)
     with pytest.raises(ResourceExhausted, match="too many"):
         hasty.pause_after(busy)
 
