@@ -34,9 +34,10 @@ def test_the_life_of_a_job(client: ballpiston.Client) -> None:
         job.pin(None)  # type: ignore[arg-type]
     assert not job.pin(False).pinned
     job.delete()
-    with pytest.raises(ballpiston.NotFound) as caught:
-        client.job(job.name)
-    assert caught.value.reason == "JOB_NOT_FOUND"
+    for call in (job.watch, job.refresh):
+        with pytest.raises(ballpiston.NotFound) as caught:
+            call()
+        assert caught.value.reason == "JOB_NOT_FOUND" and "goes on" not in str(caught.value)
 
 
 def test_the_same_question_is_answered_from_the_store(client: ballpiston.Client) -> None:

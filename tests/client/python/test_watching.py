@@ -269,12 +269,3 @@ def test_an_error_ends_the_watch_and_the_message_says_how_to_watch_again(
     with ballpiston.connect(address, timeout=LIMIT) as named:
         with pytest.raises(ballpiston.Unauthenticated, match=f"{endless.name} --server {address}$"):
             named.job(endless.name).watch()
-
-
-def test_a_watch_of_no_job_is_an_error(client: ballpiston.Client) -> None:
-    job = client.submit(**FIRST_HITS, fresh=True)
-    job.watch()
-    job.delete()
-    with pytest.raises(ballpiston.NotFound) as no_job:
-        job.watch()
-    assert "goes on" not in str(no_job.value)
