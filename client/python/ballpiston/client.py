@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import uuid
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy.typing as npt
@@ -19,7 +19,7 @@ from ballpiston.orbit import columns_of, events_of
 from ballpiston.parameter_lists import INT64, UINT64, Numbers, Shapes, number_list
 from ballpiston.parameter_lists import real_number, shape_list, truth_value, whole_number
 from ballpiston.plan import Plan
-from ballpiston.private_server import find_private_server
+from ballpiston.private_server import find_program, private_address
 from ballpiston.progress import progress_on_screen
 from ballpiston.result import Result
 from ballpiston.settings import address_and_security
@@ -72,8 +72,8 @@ def connect(
     named, security = address_and_security({k: v for k, v in arguments.items() if v is not None})
     if named:
         return Client(Connection(named, security, timeout=bound))
-    private = find_private_server()
-    return Client(Connection(private.address(), security, private=private, timeout=bound))
+    private = find_program()
+    return Client(Connection(private_address(private), security, private=private, timeout=bound))
 
 
 @dataclass(frozen=True)
@@ -334,15 +334,9 @@ class Client:
         """What the server is doing and what it permits. The first call to a server takes most of a
         second, because the server measures its speed."""
         message = self._connection.call(server_pb2.GetServerStatusRequest())
-        texts = ("version", "engine_version", "principal", "role")
-        numbers = ("workers", "busy_workers", "queued_jobs", "running_jobs")
-        return ServerStatus(
-            address=self.address,
-            state=spelled(message, "state"),
-            limits=record_of(message.limits),
-            message=message,
-            **{name: getattr(message, name) for name in (*texts, *numbers)},
-        )
+        facts = {"address": self.address, "state": spelled(message, "state"), "message": message}
+        facts = record_of(message) | facts
+        return ServerStatus(**{field.name: facts[field.name] for field in fields(ServerStatus)})
 
 
 def _numbers_of(enum: Any, what: str, names: str | Iterable[str]) -> list[int]:

@@ -23,7 +23,7 @@ from ballpiston.channel_security import ChannelSecurity
 from ballpiston.connection_hint import connection_hint
 from ballpiston.error_details import from_rpc_error
 from ballpiston.errors import Error, Unavailable
-from ballpiston.private_server import PrivateServer
+from ballpiston.private_server import private_address
 from ballpiston.server_address import literal_address
 from ballpiston.v1.analytic_pb2_grpc import AnalyticServiceStub
 from ballpiston.v1.ensemble_pb2_grpc import EnsembleServiceStub
@@ -36,15 +36,15 @@ _REVIVE_SECONDS = 10.0
 
 class Connection:
     """A channel to the server at `address`. `private`: the server is the user's private one, and
-    may be started again. `timeout` bounds each single call, in seconds; None: no bound. Safe to
-    share between threads."""
+    the program of this path starts it again. `timeout` bounds each single call, in seconds; None:
+    no bound. Safe to share between threads."""
 
     def __init__(
         self,
         address: str,
         security: ChannelSecurity,
         *,
-        private: PrivateServer | None = None,
+        private: str | None = None,
         timeout: float | None = 60.0,
     ) -> None:
         self.address = address if security.has_tls else literal_address(address)
@@ -52,7 +52,7 @@ class Connection:
         self.private = private
         self.timeout = timeout
         self.channel = open_channel(self.address, security)
-        self._token = Token(security, self.address)
+        self.metadata = Token(security, self.address).metadata  # of each call
         # Also at the interpreter's exit: gRPC's own destructor comes after its threads were killed,
         # and would wait forever for a lock that one of them held.
         self.close = weakref.finalize(self, self.channel.close)
@@ -96,10 +96,6 @@ class Connection:
             yield first
             yield from others
 
-    def metadata(self) -> list[tuple[str, str]]:
-        """The metadata of a call: the token, if one is to be sent."""
-        return self._token.metadata()
-
     def error_of(self, rpc_error: grpc.RpcError) -> Error:
         """The exception for a failed call. An error without a reason is one of the connection: its
         text names the server."""
@@ -116,7 +112,7 @@ class Connection:
         the channel is connected: it may be pausing after its last attempt, and a call would fail at
         once. Raises NoPrivateServer: the private server cannot be started."""
         if self.private is not None:
-            self.private.address()
+            private_address(self.private)
         _off_main(self._wait_until_connected, wait)
 
     def _wait_until_connected(self, longest: float) -> None:

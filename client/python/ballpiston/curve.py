@@ -45,15 +45,9 @@ def curve_of(message: Any) -> Curve:
     """Of a message ballpiston.v1.Curve."""
     points = message.points
     is_of_position = any(point.HasField("position") for point in points)
-    return Curve(
-        name=message.name,
-        time=None if is_of_position else column(points, "time"),
-        position=column(points, "position") if is_of_position else None,
-        value=column(points, "value"),
-        standard_error=column(points, "standard_error"),
-        batches=column(points, "batches"),
-        limit=column(points, "limit"),
-    )
+    x = column(points, "position" if is_of_position else "time")
+    functions = (column(points, name) for name in ("value", "standard_error", "batches", "limit"))
+    return Curve(message.name, *((None, x) if is_of_position else (x, None)), *functions)
 
 
 def choose_curve(messages: Iterable[Any], name: str) -> Curve:

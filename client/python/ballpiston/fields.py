@@ -1,6 +1,7 @@
 """The fields of messages, as Python values and as NumPy arrays."""
 
 from collections.abc import Callable, Iterable
+from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
@@ -26,19 +27,9 @@ def shown(read: Callable[[Any], Value], doc: str, of: str = "message") -> Value:
 
 def shown_once(read: Callable[[Any], Value], doc: str, of: str = "message") -> Value:
     """`shown`, but the function reads once for each object."""
-    return _Once(lambda self: read(getattr(self, of)), doc=doc)  # type: ignore[return-value]
-
-
-class _Once(property):
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._key = f"once: {name}"  # the key of the cached value
-
-    def __get__(self, instance: Any, owner: type | None = None) -> Any:
-        if instance is None:
-            return self
-        if self._key not in vars(instance):
-            vars(instance)[self._key] = super().__get__(instance, owner)
-        return vars(instance)[self._key]
+    once = cached_property(lambda self: read(getattr(self, of)))
+    once.__doc__ = doc
+    return once  # type: ignore[return-value]
 
 
 def column(messages: Iterable[Any], name: str) -> FloatArray:

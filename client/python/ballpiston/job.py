@@ -23,7 +23,7 @@ from ballpiston.result_table import html_table
 from ballpiston.specification import set_target
 from ballpiston.spelling import spelled
 from ballpiston.v1 import ensemble_pb2, spec_pb2
-from ballpiston.watch import Update, has_ended, watch_job, watch_updates
+from ballpiston.watch import Attachments, Update, has_ended, watch_job, watch_updates
 
 _PAGE = 1000
 _GLANCE_SECONDS = 2.0  # for a notebook that shows a job
@@ -133,12 +133,12 @@ class Job:
             ResourceExhausted: the server was busy for two minutes. The job goes on.
         """
         screen = progress_on_screen(progress)
-        if self.answered_from_store and screen.is_visible:
+        if self.answered_from_store:
             when = f", computed {self.ended:%Y-%m-%d %H:%M} UTC" if self.ended else ""
             screen.note(f"answered from the store: {self.name}{when} (fresh=True computes anew)")
         try:
             with closing(screen):
-                self._end(watch_job(self._connection, self.name, screen))
+                self._end(watch_job(self._connection, Attachments(self.name), screen))
         except KeyboardInterrupt:
             print(_farewell(self), file=sys.stderr)
             raise

@@ -9,7 +9,6 @@ and its stored answers, in $XDG_STATE_HOME/ballpiston or ~/.local/state/ballpist
 import os
 import shutil
 import subprocess
-from dataclasses import dataclass
 from pathlib import Path
 
 from ballpiston.errors import NoPrivateServer
@@ -19,42 +18,36 @@ _PROGRAM = "ballpiston"
 _START_TIME = 120.0  # seconds; the program itself gives up after a minute
 
 
-@dataclass(frozen=True)
-class PrivateServer:
-    """The user's private server, by means of `program`, a path of the program `ballpiston`."""
-
-    program: str
-
-    def address(self) -> str:
-        """Its address, unix:PATH. Starts the server if it does not run. Raises NoPrivateServer: the
-        program cannot be run, or cannot start the server."""
-        try:
-            answer = subprocess.run(
-                [self.program, "server", "address"],
-                stdin=subprocess.DEVNULL,
-                capture_output=True,
-                encoding="utf-8",  # gRPC's addresses are UTF-8 in every locale
-                errors="replace",
-                timeout=_START_TIME,
-            )
-        except (OSError, subprocess.TimeoutExpired) as error:
-            raise NoPrivateServer(f"cannot start the private server: {error}") from error
-        address = answer.stdout.strip()
-        if answer.returncode == 0 and is_socket(address):
-            return address
-        why = answer.stderr.strip().removeprefix(f"{_PROGRAM}: ") or "no address was printed"
-        failure = NoPrivateServer(f"cannot start the private server with {self.program}: {why}")
-        failure.exit_code = answer.returncode
-        raise failure
+def private_address(program: str) -> str:
+    """The address of the user's private server, unix:PATH. `program` is the path of the program
+    `ballpiston`, which starts the server if it does not run. Raises NoPrivateServer: the program
+    cannot be run, or cannot start the server."""
+    try:
+        answer = subprocess.run(
+            [program, "server", "address"],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            encoding="utf-8",  # gRPC's addresses are UTF-8 in every locale
+            errors="replace",
+            timeout=_START_TIME,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise NoPrivateServer(f"cannot start the private server: {error}") from error
+    address = answer.stdout.strip()
+    if answer.returncode == 0 and is_socket(address):
+        return address
+    why = answer.stderr.strip().removeprefix(f"{_PROGRAM}: ") or "no address was printed"
+    failure = NoPrivateServer(f"cannot start the private server with {program}: {why}")
+    failure.exit_code = answer.returncode
+    raise failure
 
 
-def find_private_server() -> PrivateServer:
-    """With the program that BALLPISTON_PROGRAM names, else the one that is installed with this
-    package, else the one in PATH. Raises NoPrivateServer: there is no program."""
+def find_program() -> str:
+    """The path of the program `ballpiston`: what BALLPISTON_PROGRAM names, else the one that is
+    installed with this package, else the one in PATH. Raises NoPrivateServer: there is none."""
     program = os.environ.get("BALLPISTON_PROGRAM") or _program_beside_package()
-    program = program or shutil.which(_PROGRAM)
-    if program:
-        return PrivateServer(program)
+    if program := program or shutil.which(_PROGRAM):
+        return program
     raise NoPrivateServer(
         "the program ballpiston, which starts the private server, was not found: install the "
         'package ballpiston, or name a server: ballpiston.connect("host:port")'

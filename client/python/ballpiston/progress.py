@@ -81,10 +81,6 @@ class Progress:
         self._fraction = 0.0
         self._text = ""
 
-    @property
-    def is_visible(self) -> bool:
-        return self._bar is not None
-
     def show(self, message: Any) -> None:
         """Shows a message of a watch."""
         progress = progress_in(message)

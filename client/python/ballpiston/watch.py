@@ -10,6 +10,8 @@ RESOURCE_EXHAUSTED with a reason, as from a server that is busy, and by an end w
 state. Every other error ends the watch.
 """
 
+from __future__ import annotations
+
 import asyncio
 import random
 import time
@@ -38,38 +40,9 @@ def has_ended(state: int) -> bool:
     return state in (_JOB.SUCCEEDED, _JOB.FAILED, _JOB.CANCELLED)
 
 
-class ReattachPace:
-    """When a watch that lost its server attaches again, and when it gives up. Each pause is up to a
-    quarter longer than needed, so that the watchers of a server that died do not return as one. The
-    caller passes the time, in seconds, so that tests need not wait."""
-
-    def __init__(
-        self, first: float = 0.1, longest: float = 5.0, give_up_after: float = 120.0
-    ) -> None:
-        self._first, self._longest, self.give_up_after = first, longest, give_up_after
-        self.heard()
-
-    def heard(self) -> None:
-        """The server said something: the pauses and the time to give up start again."""
-        self._lost: float | None = None  # when the stream broke
-        self._next = self._first
-
-    def next_pause(self, now: float, least: float = 0.0) -> float | None:
-        """Seconds before the next attempt, at least `least`; None if that would come after the time
-        to give up. That counts from the first call, not from the last message: this process itself
-        may have slept since then."""
-        self._lost = now if self._lost is None else self._lost
-        pause = max(self._next, least) * random.uniform(1.0, 1.25)
-        self._next = min(2 * self._next, self._longest)
-        return None if now - self._lost + pause > self.give_up_after else pause
-
-
-def watch_job(
-    connection: Connection, name: str, screen: Progress, pace: ReattachPace | None = None
-) -> Any:
+def watch_job(connection: Connection, watch: Attachments, screen: Progress) -> Any:
     """Blocks until the job has ended and returns it, as an EnsembleJob. Raises Unavailable,
     ResourceExhausted: the watch gave up; Error: any other error of the server."""
-    watch = Attachments(name, pace)
     while True:
         why = _read_stream(connection, watch, screen)
         if watch.ended is not None:
@@ -88,21 +61,26 @@ def _connect_again(connection: Connection) -> None:
 
 
 class Attachments:
-    """What a watch has seen over all its streams.
+    """The streams of a watch: what it has seen, when it attaches again after it lost its server,
+    and when it gives up. All times are in seconds.
 
     Attributes:
         request: of the next stream; it has the last resume token.
         ended: the job, once it has ended.
     """
 
-    def __init__(self, name: str, pace: ReattachPace | None = None) -> None:
-        self._pace = pace or ReattachPace()
+    def __init__(
+        self, name: str, first: float = 0.1, longest: float = 5.0, give_up_after: float = 120.0
+    ) -> None:
+        self._first, self._longest, self._give_up_after = first, longest, give_up_after
         self.request = ensemble_pb2.WatchEnsembleJobRequest(name=name)
         self.ended: Any = None
+        self._lost: float | None = None  # when the stream broke
+        self._next = first  # pause
 
     def handle(self, message: Any) -> None:
-        """A message of a stream."""
-        self._pace.heard()
+        """A message of a stream: the pauses and the time to give up start again."""
+        self._lost, self._next = None, self._first
         if message.resume_token:
             self.request.resume_token = message.resume_token
         if has_ended(message.job.state):
@@ -114,15 +92,25 @@ class Attachments:
         Unavailable: it is time to give up, and no server answers."""
         if not _is_broken_stream(why):
             raise why
-        pause = self._pace.next_pause(time.monotonic(), why.retry_delay)
+        pause = self.next_pause(time.monotonic(), why.retry_delay)
         if pause is None and why.code == "RESOURCE_EXHAUSTED":
             raise why
         if pause is None:
-            silence = f"{self._pace.give_up_after:g} s"
+            silence = f"{self._give_up_after:g} s"
             raise Unavailable(
                 f"gave up watching after {silence} without the server: {why}", code="UNAVAILABLE"
             ) from why
         return pause
+
+    def next_pause(self, now: float, least: float = 0.0) -> float | None:
+        """The pause, at least `least`; None if it would end after the time to give up. That counts
+        from the first call, not from the last message: this process itself may have slept since
+        then. Each pause is up to a quarter longer than needed, so that the watchers of a server
+        that died do not return as one."""
+        self._lost = now if self._lost is None else self._lost
+        pause = max(self._next, least) * random.uniform(1.0, 1.25)
+        self._next = min(2 * self._next, self._longest)
+        return None if now - self._lost + pause > self._give_up_after else pause
 
 
 def _ended_early() -> Error:

@@ -8,7 +8,6 @@ variable BALLPISTON_BIN names, and the package from PYTHONPATH:
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import select
 import signal
@@ -76,13 +75,10 @@ class Home:
             [program, *words], check=True, stdout=subprocess.PIPE, text=True, timeout=LIMIT
         ).stdout
 
-    def command_json(self, *words: str) -> Any:
-        return json.loads(self.command(*words, "--format", "json"))
-
     def python(self, program: str, *arguments: str, **options: Any) -> subprocess.Popen[str]:
         """Another process that runs a Python program."""
         command = [sys.executable, "-c", program, *arguments]
-        return subprocess.Popen(command, stdout=-1, stderr=-1, text=True, **options)
+        return subprocess.Popen(command, text=True, **{"stdout": -1, "stderr": -1} | options)
 
     def server_id(self) -> int | None:
         """The process id of the server; None if none runs. The file keeps the id of a server that
@@ -98,15 +94,10 @@ class Home:
         process = self.server_id()
         if process is None:
             return
-        with contextlib.suppress(ProcessLookupError):
-            handle = os.pidfd_open(process)
-            try:
-                os.kill(process, how)
-                poll = select.poll()
-                poll.register(handle, select.POLLIN)
-                assert poll.poll(LIMIT * 1000), f"the server has not ended after {LIMIT} seconds"
-            finally:
-                os.close(handle)
+        with contextlib.suppress(ProcessLookupError), os.fdopen(os.pidfd_open(process)) as handle:
+            os.kill(process, how)
+            ended, _, _ = select.select([handle], [], [], LIMIT)
+            assert ended, f"the server has not ended after {LIMIT} seconds"
 
 
 @pytest.fixture(scope="session")
@@ -150,14 +141,7 @@ FIRST_HITS: dict[str, Any] = {
 }
 
 # Would take hours: tests cancel it.
-ENDLESS: dict[str, Any] = {
-    "experiment": "first-hit",
-    "rho": 0.5296,
-    "delta": 0.01,
-    "epsilon": 0.125,
-    "exponent": 1,
-    "samples": 1e11,
-}
+ENDLESS: dict[str, Any] = {**FIRST_HITS, "delta": 0.01, "exponent": 1, "samples": 1e11}
 
 
 @pytest.fixture

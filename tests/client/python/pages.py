@@ -6,8 +6,8 @@ import json
 import re
 import shlex
 from collections import Counter
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from conftest import PROJECT
 
@@ -63,8 +63,7 @@ def anchors(text: str) -> set[str]:
     return found
 
 
-@dataclass(frozen=True)
-class Command:
+class Command(NamedTuple):
     """A call of the program `ballpiston` in a block of code."""
 
     page: str
@@ -95,27 +94,9 @@ def commands(page: Path) -> list[Command]:
     return found
 
 
+_CALL = re.compile(r"""(?:^|[;&|(]) *ballpiston ((?:[^'"();<>|&]|'[^']*'|"[^"]*")*)""")
+
+
 def calls(script: str) -> list[list[str]]:
     """The words of each call of `ballpiston` in a line of shell, without the program's name."""
-    if "ballpiston" not in script:
-        return []
-    lexer = shlex.shlex(script, posix=True, punctuation_chars="();<>|&")
-    lexer.whitespace_split = True
-    found: list[list[str]] = []
-    call: list[str] | None = None
-    is_start = True  # of a simple command
-    try:
-        words = list(lexer)
-    except ValueError:  # an unclosed quotation mark: text, not shell
-        return []
-    for word in words:
-        if set(word) <= set("();<>|&"):
-            is_start, call = word[-1] not in "<>", None
-        elif is_start and word == "ballpiston":
-            is_start, call = False, []
-            found.append(call)
-        elif call is not None:
-            call.append(word)
-        else:
-            is_start = word.endswith("=$") or word == "export"
-    return found
+    return [shlex.split(words, comments=True) for words in _CALL.findall(script)]

@@ -27,12 +27,8 @@ def test_the_sweep_prints_a_table_and_saves_its_result(tmp_path: Path) -> None:
         stdout=subprocess.PIPE,
         text=True,
     )
-    assert [line.split()[0] for line in done.stdout.splitlines()[1:]] == [
-        "delta",
-        "0.200",
-        "0.100",
-        "0.050",
-    ]
+    first = [line.split()[0] for line in done.stdout.splitlines()[1:]]
+    assert first == ["delta", "0.200", "0.100", "0.050"]
     result = ballpiston.load(tmp_path / "sweep.json")
     # The false-alarm rate of 5 sigma is 6e-7; the seed is fixed.
     assert max(abs(result.z_score("mean_free_time_ball_piston"))) < 5
@@ -72,12 +68,8 @@ def test_a_notebook_runs_and_prints_its_stored_output(
 
 
 @pytest.mark.parametrize("name", NOTEBOOKS)
-def test_a_notebook_says_what_one_learns(name: str) -> None:
+def test_a_notebook_is_valid_and_says_what_one_learns(name: str) -> None:
     first = json.loads((EXAMPLES / name).read_text(encoding="utf-8"))["cells"][0]
     assert first["cell_type"] == "markdown" and "**You learn** " in "".join(first["source"])
-
-
-@pytest.mark.parametrize("name", NOTEBOOKS)
-def test_a_notebook_is_valid(name: str) -> None:
     nbformat = pytest.importorskip("nbformat")
     nbformat.validate(nbformat.read(EXAMPLES / name, as_version=4))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 import uuid
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,10 @@ def test_the_life_of_a_job(client: ballpiston.Client) -> None:
     assert client.submit(**FIRST_HITS, fresh=True, request_id=str(identifier)).name == job.name
     for name in (job.name, job.name.removeprefix("ensembleJobs/")):
         assert client.job(name).name == job.name
+    with pytest.raises(TypeError, match="name has to be a str, such as job.name, not 3"):
+        client.job(3)  # type: ignore[arg-type]
     result = job.watch()
+    assert client.job(job.name).result() == result
     assert (job.state, job.has_ended) == ("succeeded", True)
     assert (len(result), result.job_name) == (4, job.name)
     assert job.created <= job.started <= job.ended
@@ -30,20 +34,20 @@ def test_the_life_of_a_job(client: ballpiston.Client) -> None:
         job.pin(None)  # type: ignore[arg-type]
     assert not job.pin(False).pinned
     job.delete()
-    with pytest.raises(ballpiston.NotFound) as caught:
-        client.job(job.name)
-    assert caught.value.reason == "JOB_NOT_FOUND"
+    for call in (job.watch, job.refresh):
+        with pytest.raises(ballpiston.NotFound) as caught:
+            call()
+        assert caught.value.reason == "JOB_NOT_FOUND" and "goes on" not in str(caught.value)
 
 
 def test_the_same_question_is_answered_from_the_store(client: ballpiston.Client) -> None:
-    first = client.run("equilibrium", rho=0.53, delta=0.1, collisions=100, model="billiard")
-    job = client.submit("equilibrium", rho=0.53, delta=0.1, collisions=100, model="billiard")
+    question: Any = dict(experiment="equilibrium", rho=0.53, delta=0.1, model="billiard", samples=9)
+    first = client.run(**question)
+    job = client.submit(**question)
     assert job.answered_from_store
     assert job.name == first.job_name
     assert job.watch().job.answered_from_store
-    again = client.submit(
-        "equilibrium", rho=0.53, delta=0.1, collisions=100, model="billiard", fresh=True
-    )
+    again = client.submit(**question, fresh=True)
     assert not again.answered_from_store
     assert again.name != job.name
     again.watch()  # the next test lists active jobs
@@ -59,6 +63,10 @@ def test_jobs_are_listed_by_state_and_experiment(
     assert succeeded and all(job.experiment == "first-hit" for job in succeeded)
     assert len(client.jobs(limit=1)) == 1
     assert client.jobs(limit=0) == []
+    with pytest.raises(ValueError, match="limit has to be a whole number, not 1.5"):
+        client.jobs(limit=1.5)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="limit is -1; permitted: 0 or more, or None"):
+        client.jobs(limit=-1)
 
 
 def test_a_cancelled_job_keeps_its_finished_points(
@@ -75,15 +83,6 @@ def test_a_cancelled_job_keeps_its_finished_points(
     assert type(error) is ballpiston.JobCancelled
     assert str(error) == f"{endless.name} cancelled"
     assert error.metadata == {"limit": "3"} and not hasattr(error, "job")
-
-
-def test_a_job_is_found_by_a_text_and_a_list_has_a_limit(client: ballpiston.Client) -> None:
-    with pytest.raises(TypeError, match="name has to be a str, such as job.name, not 3"):
-        client.job(3)  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="limit has to be a whole number, not 1.5"):
-        client.jobs(limit=1.5)  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="limit is -1; permitted: 0 or more, or None"):
-        client.jobs(limit=-1)
 
 
 def test_a_notebook_shows_the_job_as_it_is_now(endless: ballpiston.Job) -> None:

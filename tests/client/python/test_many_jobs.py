@@ -27,13 +27,6 @@ def hits(seed: int) -> dict[str, Any]:
     return {**FIRST_HITS, "seed": seed}
 
 
-def test_a_table_has_the_answers_of_its_points_alone(client: ballpiston.Client) -> None:
-    together = client.run("first-hit", points=TABLE, **OF_THE_TABLE, progress=False)
-    for i, (rho, delta) in enumerate(zip(TABLE["rho"], TABLE["delta"])):
-        alone = client.run("first-hit", rho=rho, delta=delta, **OF_THE_TABLE, progress=False)
-        assert together["mean_hit_time"][i] == alone["mean_hit_time"][0]
-
-
 def test_a_table_may_be_a_frame_or_rows(client: ballpiston.Client) -> None:
     pandas = pytest.importorskip("pandas")
     rows = [{"rho": rho, "delta": delta} for rho, delta in zip(*TABLE.values())]
@@ -42,7 +35,9 @@ def test_a_table_may_be_a_frame_or_rows(client: ballpiston.Client) -> None:
         for points in (TABLE, rows, pandas.DataFrame(TABLE))
     ]
     assert asked[0] == asked[1] == asked[2]
-    assert list(asked[0].grid.table) == ["rho", "delta"]
+    grid = asked[0].grid
+    assert list(grid.table) == ["rho", "delta"]
+    assert {"rho": list(grid.rho), "delta": list(grid.delta)} == TABLE
 
 
 @pytest.mark.parametrize(
@@ -91,16 +86,17 @@ def test_a_list_has_all_jobs(client: ballpiston.Client) -> None:
     assert len(client.jobs(labels={"run": "many"})) == 51
 
 
-def test_cancel_by_label_asks_and_takes_no_for_an_answer(home: Home) -> None:
-    with ballpiston.connect() as client:
-        job = client.submit(**ENDLESS, labels={"run": "endless"})
-        words = [home.programs / "ballpiston", "cancel", "--label", "run=endless"]
-        asked = subprocess.run(words, input="n\n", capture_output=True, text=True, check=False)
-        assert "cancel 1 job of local? [y/N]" in asked.stderr
-        assert "nothing was changed" in asked.stderr
-        assert not job.has_ended
-        assert subprocess.run(words, input="y\n", text=True, check=False).returncode == 0
-        assert job.refresh().message.state != ballpiston.v1.ensemble_pb2.EnsembleJob.RUNNING
+def test_cancel_by_label_asks_and_takes_no_for_an_answer(
+    home: Home, endless: ballpiston.Job
+) -> None:
+    endless.label(run="endless")
+    words = [home.programs / "ballpiston", "cancel", "--label", "run=endless"]
+    asked = subprocess.run(words, input="n\n", capture_output=True, text=True, check=False)
+    assert "cancel 1 job of local? [y/N]" in asked.stderr
+    assert "nothing was changed" in asked.stderr
+    assert not endless.has_ended
+    subprocess.run(words, input="y\n", text=True, check=True)
+    assert endless.state in ("cancelling", "cancelled")
 
 
 def test_an_extended_job_has_the_bytes_of_one_long_run(client: ballpiston.Client) -> None:
@@ -172,40 +168,30 @@ def test_a_table_of_estimates_needs_jobs(first_hits: ballpiston.Result) -> None:
         ballpiston.estimates_table([first_hits])  # type: ignore[list-item]
 
 
-def test_the_state_in_a_table_is_that_of_its_points(
-    client: ballpiston.Client, first_hits: ballpiston.Result, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    job = client.job(first_hits.job_name)
-    partial = ensemble_pb2.EnsembleJob(state=ensemble_pb2.EnsembleJob.RUNNING)
-    earlier = ballpiston.Result(partial, first_hits.messages)
-    monkeypatch.setattr(job, "result_in", lambda view: earlier)
-    assert set(ballpiston.estimates_table([job])["state"]) == {"running"}
-
-
-def test_lost_orbits_are_a_warning_in_tables(
+def test_a_table_has_the_state_of_its_points_and_warns_of_lost_orbits(
     client: ballpiston.Client,
     first_hits: ballpiston.Result,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     job = client.job(first_hits.job_name)
-    lost = job.result()
+    partial = ensemble_pb2.EnsembleJob(state=ensemble_pb2.EnsembleJob.RUNNING)
+    lost = ballpiston.Result(partial, job.result().messages)
     lost.messages[2].health.escapes = 3
     job.specification.precision = ballpiston.v1.spec_pb2.EnsembleSpec.SINGLE
     monkeypatch.setattr(job, "result_in", lambda view: lost)
-    assert set(ballpiston.estimates_table([job])["precision"]) == {"single"}
+    table = ballpiston.estimates_table([job])
+    assert (set(table["state"]), set(table["precision"])) == ({"running"}, {"single"})
     warning = "warning: point 2: 3 orbits left the cell; this is a defect: do not use the point"
     assert f"{job.name}: {warning}\n" in capsys.readouterr().err
     assert repr(lost).endswith(f"\n{warning}") and warning in lost._repr_html_()
 
 
 def test_the_estimates_of_a_running_job_have_a_note(
-    client: ballpiston.Client, capsys: pytest.CaptureFixture[str]
+    endless: ballpiston.Job, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    job = client.submit(**ENDLESS)
-    ballpiston.estimates_table([job])
+    ballpiston.estimates_table([endless])
     assert re.search(r"is still (queued|running): 0 of 1 points", capsys.readouterr().err)
-    job.cancel()
 
 
 @pytest.mark.parametrize("labels", [{"a": 5}, {5: "a"}, ["a"]])
@@ -227,15 +213,9 @@ def test_an_event_loop_watches_many_jobs(client: ballpiston.Client) -> None:
     results = asyncio.run(watch())
     for job, result in zip(jobs, results):
         np.testing.assert_array_equal(result["mean_hit_time"], job.result()["mean_hit_time"])
-
-
-def test_the_end_of_a_cancelled_job_is_an_error_in_an_event_loop(
-    client: ballpiston.Client,
-) -> None:
-    job = client.submit(**ENDLESS)
-    job.cancel()
+    cancelled = client.submit(**ENDLESS).cancel()
     with pytest.raises(ballpiston.JobCancelled):
-        asyncio.run(job.result_async())
+        asyncio.run(cancelled.result_async())
 
 
 def test_the_collisions_of_a_job_are_read_as_records(home: Home, tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 import inspect
+import json
 import re
 import subprocess
 from pathlib import Path
@@ -39,11 +40,6 @@ def dead_links(page: Path, text: str) -> list[str]:
     return dead
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(PROJECT)))
-def test_every_link_leads_to_a_file_and_a_heading(page: Path) -> None:
-    assert dead_links(page, pages.text_of(page)) == []
-
-
 def missing_files(page: Path, text: str) -> list[str]:
     """The paths of files and folders in backquotes that do not exist, neither in the project nor in
     the page's folder. Patterns and placeholders in capitals are no paths."""
@@ -67,8 +63,9 @@ def source_names() -> set[str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(PROJECT)))
-def test_every_path_of_the_project_exists(page: Path) -> None:
-    assert missing_files(page, pages.text_of(page)) == []
+def test_every_link_leads_to_a_heading_and_every_path_to_a_file(page: Path) -> None:
+    text = pages.text_of(page)
+    assert (dead_links(page, text), missing_files(page, text)) == ([], [])
 
 
 @functools.cache
@@ -129,7 +126,7 @@ def is_quick(home: Home, command: Command) -> bool:
             place = rest.index("--format")
             del rest[place : place + 2]
         limit = QUICK_IF_SHOWN if command.shown else QUICK
-        return bool(home.command_json("plan", *rest)["work"] < limit)
+        return bool(json.loads(home.command("plan", *rest, "--format", "json"))["work"] < limit)
     if verb == "trace":
         return int(rest[rest.index("--events") + 1]) <= 1000
     return verb in ["analytic", "plan"]

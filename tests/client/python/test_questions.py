@@ -16,31 +16,27 @@ def grid(**lists: Any) -> Any:
     return ballpiston.specification("first-hit", **lists).grid
 
 
+ONE = (0.25, [0.25], (0.25,), np.array([0.25]), np.float64(0.25), np.array(0.25), "0.25")
+
+
 @pytest.mark.parametrize(
-    "values", [0.25, [0.25], (0.25,), np.array([0.25]), np.float64(0.25), np.array(0.25), "0.25"]
+    ("name", "values", "expected"),
+    [
+        *(("epsilon", value, [0.25]) for value in ONE),
+        ("exponent", range(3), [0, 1, 2]),
+        ("exponent", np.arange(3), [0, 1, 2]),
+        ("exponent", (n for n in (1, 2)), [1, 2]),
+        ("epsilon", "0.01:0.49:49", [n / 100 for n in range(1, 50)]),
+        ("delta", "0.1,0.2:0.3:2", [0.1, 0.2, 0.3]),
+        ("delta", "0.01:1:3:log", [0.01, 0.1, 1]),
+        ("epsilon", "1e-309:0.1:3:log", [1e-309, 1e-155, 0.1]),
+        ("cells", "10x10", ["10x10"]),
+        ("cells", [4, np.int64(8), "1e3", "8x4"], ["4", "8", "1000", "8x4"]),
+        ("cells", "2:8:3,16", ["2", "5", "8", "16"]),
+    ],
 )
-def test_one_number_may_be_written_in_many_ways(values: Any) -> None:
-    assert list(grid(epsilon=values).epsilon) == [0.25]
-
-
-def test_ranges_arrays_and_iterators_are_lists() -> None:
-    assert list(grid(exponent=range(3)).exponent) == [0, 1, 2]
-    assert list(grid(exponent=np.arange(3)).exponent) == [0, 1, 2]
-    assert list(grid(exponent=(n for n in (1, 2))).exponent) == [1, 2]
-
-
-def test_texts_are_lists_of_the_command_line() -> None:
-    fractions = [n / 100 for n in range(1, 50)]
-    assert list(grid(epsilon="0.01:0.49:49").epsilon) == fractions
-    assert list(grid(delta="0.1,0.2:0.3:2").delta) == [0.1, 0.2, 0.3]
-    assert list(grid(delta="0.01:1:3:log").delta) == pytest.approx([0.01, 0.1, 1])
-    assert list(grid(epsilon="1e-309:0.1:3:log").epsilon) == [1e-309, 1e-155, 0.1]
-
-
-def test_shapes_are_numbers_or_texts() -> None:
-    assert list(grid(cells="10x10").cells) == ["10x10"]
-    assert list(grid(cells=[4, np.int64(8), "1e3", "8x4"]).cells) == ["4", "8", "1000", "8x4"]
-    assert list(grid(cells="2:8:3,16").cells) == ["2", "5", "8", "16"]
+def test_a_list_may_be_written_in_many_ways(name: str, values: Any, expected: list[Any]) -> None:
+    assert list(getattr(grid(**{name: values}), name)) == expected
 
 
 @pytest.mark.parametrize(
@@ -76,79 +72,45 @@ def test_a_chain_has_a_finite_number_of_cells(values: Any) -> None:
         grid(cells=values)
 
 
-def test_whole_numbers_may_be_floats() -> None:
-    assert ballpiston.specification("first-hit", samples=1e5).target.samples == 100_000
-    with pytest.raises(TypeError, match="samples has to be a number"):
-        ballpiston.specification("first-hit", samples=np.timedelta64(5, "s"))
-    with pytest.raises(ValueError, match="whole number"):
-        ballpiston.specification("first-hit", samples=1.5)
-
-
-def test_a_switch_is_true_or_false(client: ballpiston.Client) -> None:
-    assert ballpiston.specification("first-hit", verify=np.bool_(True)).verify
-    with pytest.raises(TypeError, match="verify has to be True or False, not 'no'"):
-        client.run("first-hit", verify="no")
-    with pytest.raises(TypeError, match="fresh has to be True or False, not 'no'"):
-        client.run("first-hit", fresh="no")
-
-
-def test_a_seed_has_64_bits() -> None:
+def test_numbers_and_names_may_be_written_in_many_ways() -> None:
     for seed in (2**64 - 1, np.array(2**64 - 1)):
         assert ballpiston.specification("first-hit", seed=seed).seed == 2**64 - 1
-    with pytest.raises(ValueError, match="seed"):
-        ballpiston.specification("first-hit", seed=-1)
-
-
-def test_numbers_that_cannot_be_sent_are_named(client: ballpiston.Client) -> None:
-    with pytest.raises(ValueError, match="^seed has to be from 0 to"):
-        client.trace(rho=0.5296, delta=0.1, events=1, seed=-1)
-    with pytest.raises(ValueError, match="^events has to be from"):
-        client.trace(rho=0.5296, delta=0.1, events=1e20)
-    with pytest.raises(ValueError, match="^priority has to be from -100 to 100"):
-        client.submit("first-hit", priority=10**12)
-    with pytest.raises(TypeError, match="^estimate has to be a str, not 5"):
-        ballpiston.specification("lyapunov", estimate=5)  # type: ignore[arg-type]
-
-
-def test_a_budget_below_a_nanosecond_is_named_as_it_was_given() -> None:
-    with pytest.raises(ValueError, match="budget is 1e-10 s; permitted: 1e-9"):
-        ballpiston.specification("first-hit", budget=1e-10)
-
-
-def test_only_tolerance_and_budget_stand_together() -> None:
+    assert ballpiston.specification("first-hit", samples=1e5).target.samples == 100_000
     target = ballpiston.specification("first-hit", tolerance=0.01, budget=1.5).target
     assert (target.tolerance, target.budget.seconds, target.budget.nanos) == (0.01, 1, 500_000_000)
-    with pytest.raises(TypeError, match="samples and tolerance exclude each other"):
-        ballpiston.specification("first-hit", samples=10, tolerance=0.1)
-
-
-def test_names_are_spelled_as_on_the_command_line() -> None:
-    spec = ballpiston.specification("gas-equilibrium", model="billiard-reference")
+    model, verify = "billiard-reference", np.bool_(True)
+    spec = ballpiston.specification("gas-equilibrium", model=model, verify=verify)
     assert spec.experiment == spec_pb2.EnsembleSpec.GAS_EQUILIBRIUM
     assert spec.model == spec_pb2.EnsembleSpec.BILLIARD_REFERENCE
-    with pytest.raises(ValueError, match="did you mean 'first-hit'"):
-        ballpiston.specification("frist-hit")
+    assert spec.verify
 
 
-def test_an_unknown_keyword_is_a_type_error_with_a_suggestion(client: ballpiston.Client) -> None:
-    before = len(client.jobs(limit=None))
-    with pytest.raises(TypeError, match="no keyword 'deltta'; did you mean 'delta'"):
-        client.submit("first-hit", rho=0.5296, deltta=0.1)
-    with pytest.raises(TypeError, match="did you mean 'samples'"):
-        client.run("first-hit", rho=0.5296, sample=10)
-    with pytest.raises(TypeError, match="did you mean 'labels'"):
-        client.run("first-hit", label={})
-    with pytest.raises(TypeError, match="no keyword 'labels'$"):
-        client.sample("first-hit", labels={})
-    assert len(client.jobs(limit=None)) == before
-
-
-def test_a_wrong_progress_is_an_error_before_the_job_is_submitted(
-    client: ballpiston.Client,
+@pytest.mark.parametrize(
+    ("keywords", "error", "text"),
+    [
+        ({"experiment": "frist-hit"}, ValueError, "did you mean 'first-hit'"),
+        ({"samples": np.timedelta64(5, "s")}, TypeError, "samples has to be a number"),
+        ({"samples": 1.5}, ValueError, "whole number"),
+        ({"samples": 10, "tolerance": 0.1}, TypeError, "samples and tolerance exclude each other"),
+        ({"budget": 1e-10}, ValueError, "budget is 1e-10 s; permitted: 1e-9"),
+        ({"seed": -1}, ValueError, "^seed has to be from 0 to"),
+        ({"priority": 10**12}, ValueError, "^priority has to be from -100 to 100"),
+        ({"estimate": 5}, TypeError, "^estimate has to be a str, not 5"),
+        ({"verify": "no"}, TypeError, "verify has to be True or False, not 'no'"),
+        ({"fresh": "no"}, TypeError, "fresh has to be True or False, not 'no'"),
+        ({"progress": "foo"}, ValueError, "'foo'; permitted: auto, bar, json, none"),
+        ({"deltta": 0.1}, TypeError, "no keyword 'deltta'; did you mean 'delta'"),
+        ({"sample": 10}, TypeError, "did you mean 'samples'"),
+        ({"label": {}}, TypeError, "did you mean 'labels'"),
+    ],
+)
+def test_a_wrong_value_is_an_error_before_a_job_is_submitted(
+    client: ballpiston.Client, keywords: dict[str, Any], error: type[Exception], text: str
 ) -> None:
     before = len(client.jobs(limit=None))
-    with pytest.raises(ValueError, match="progress is 'foo'; permitted: auto, bar, json, none"):
-        client.run("equilibrium", rho=0.53, delta=0.1, samples=31, progress="foo")
+    question = {"experiment": "equilibrium", "rho": 0.53, "delta": 0.1} | keywords
+    with pytest.raises(error, match=text):
+        client.run(**question)
     assert len(client.jobs(limit=None)) == before
 
 
@@ -182,18 +144,26 @@ def test_the_server_reports_all_violations_at_once(client: ballpiston.Client) ->
     assert isinstance(error, ValueError)
 
 
-def test_a_single_violation_is_one_line(client: ballpiston.Client) -> None:
+def test_errors_of_other_calls_are_named(client: ballpiston.Client) -> None:
+    with pytest.raises(TypeError, match="no keyword 'labels'$"):
+        client.sample("first-hit", labels={})
     with pytest.raises(ballpiston.InvalidSpecification) as caught:
-        client.analytic(0.5296, 0.7)
+        client.analytic(0.5296, 0.7)  # a single violation is one line
     assert "\n" not in str(caught.value) and "(INVALID_REQUEST)" in str(caught.value)
 
 
-def test_a_trace_reports_errors_of_the_server(client: ballpiston.Client) -> None:
-    with pytest.raises(ballpiston.InvalidSpecification, match="events"):
-        list(client.trace(rho=0.5296, delta=0.1, events=0))
-
-
-@pytest.mark.parametrize("cells", [[], [4, "4x3"]])
-def test_a_trace_has_one_shape_of_cells(client: ballpiston.Client, cells: Any) -> None:
-    with pytest.raises(ValueError, match=f"cells: a trace has one shape, not {len(cells)}"):
-        next(client.trace(rho=0.5296, delta=0.1, events=1, cells=cells))
+@pytest.mark.parametrize(
+    ("keywords", "text"),
+    [
+        ({"seed": -1}, "^seed has to be from 0 to"),
+        ({"events": 1e20}, "^events has to be from"),
+        ({"events": 0}, "events.*permitted"),
+        ({"cells": []}, "cells: a trace has one shape, not 0"),
+        ({"cells": [4, "4x3"]}, "cells: a trace has one shape, not 2"),
+    ],
+)
+def test_errors_of_a_trace_are_named(
+    client: ballpiston.Client, keywords: dict[str, Any], text: str
+) -> None:
+    with pytest.raises(ValueError, match=text):
+        next(client.trace(**{"rho": 0.5296, "delta": 0.1, "events": 1} | keywords))

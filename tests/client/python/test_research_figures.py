@@ -13,17 +13,15 @@ from ballpiston.figures import full_counting, logarithm, lyapunov, slow_pistons
 from ballpiston.figures.parts import charge, fits, tangent_growth
 
 
-def test_a_fit_finds_the_coefficients_of_a_polynomial() -> None:
-    x = np.array([0.1, 0.2, 0.3, 0.5])
-    fit = fits.linear(np.vander(x, 2, increasing=True), 2 + 3 * x, np.full(4, 0.1))
-    assert fit.coefficients == pytest.approx([2, 3])
-    assert (fit.chi_squared, fit.freedom) == (pytest.approx(0, abs=1e-20), 2)
-
-
-def test_a_mean_has_the_error_of_independent_values() -> None:
-    fit = fits.linear(np.ones((2, 1)), np.array([1.0, 3.0]), np.ones(2))
-    assert (fit.coefficients[0], fit.errors[0]) == pytest.approx((2, np.sqrt(0.5)))
-    assert (fit.chi_squared, fit.freedom) == (pytest.approx(2), 1)
+def test_a_fit_to_independent_values_is_that_of_numpy() -> None:
+    x, errors = np.array([0.1, 0.2, 0.3, 0.5]), np.array([0.1, 0.2, 0.1, 0.3])
+    values = np.array([2.4, 2.5, 2.8, 3.6])
+    fit = fits.linear(np.vander(x, 2), values, errors)
+    coefficients, covariance = np.polyfit(x, values, 1, w=1 / errors, cov="unscaled")
+    residuals = (values - np.polyval(coefficients, x)) / errors
+    assert fit.coefficients == pytest.approx(coefficients)
+    assert fit.errors == pytest.approx(np.sqrt(np.diag(covariance)))
+    assert (fit.chi_squared, fit.freedom) == (pytest.approx(residuals @ residuals), 2)
 
 
 def test_a_mean_of_correlated_values_has_a_larger_error() -> None:
@@ -118,11 +116,8 @@ def test_growths_that_were_not_measured_are_drawn_as_such(
     assert texts == ["not measured: too few samples"] * 2
 
 
-def test_the_noise_near_equilibrium_is_that_of_equilibrium() -> None:
+def test_near_equilibrium_the_noise_and_the_slowest_rate_are_those_of_equilibrium() -> None:
     assert full_counting.limits(1.001, 0.999)[1] == pytest.approx(2, rel=1e-5)
-
-
-def test_the_slowest_rate_near_equilibrium_is_that_of_a_sine() -> None:
     assert full_counting.slowest_rate(1.0, 1.0) == pytest.approx(np.pi**2, rel=1e-4)
 
 
@@ -144,23 +139,17 @@ def test_a_logarithm_of_delta_is_found_with_its_factor() -> None:
     assert (found["plain_chi_squared"] > 20).all()
 
 
+@pytest.mark.filterwarnings("error")
 def test_a_logarithm_of_the_window_is_found_beside_a_part_that_ends() -> None:
-    window = 8 * 2.0 ** np.arange(5)
-    zeros, law = np.zeros(5), 0.01
-    grown = law * np.log(window / 8) + 0.2 * (1 / 8 - 1 / window)
-    whole = {"delta": zeros + 0.2, "window": window, "law": zeros + law}
-    whole |= {"limit_all": zeros, "limit_idle": zeros, "later_idle": grown, "later_met": -grown}
+    window, ones = 8 * 2.0 ** np.arange(5), np.ones(5)
+    grown = 0.01 * np.log(window / 8) + 0.2 * (1 / 8 - 1 / window)
+    whole = {"delta": 0.2 * ones, "window": window, "law": 0.01 * ones}
+    whole |= {"limit_all": 0 * ones, "limit_idle": 0 * ones}
+    whole |= {"later_idle": grown, "later_met": -grown}
     whole |= {f"later_{part}_error": 0.001 * np.arange(5) for part in ("idle", "met")}
     found = logarithm.logarithms_of_window(whole)
     assert (found["idle"][0], found["met"][0]) == pytest.approx((1, -1))
-
-
-@pytest.mark.filterwarnings("error")
-def test_growth_without_an_error_is_left_out() -> None:
-    window, ones = 8 * 2.0 ** np.arange(5), np.ones(5)
-    whole = {"delta": 0.2 * ones, "window": window, "law": 0.01 * ones}
-    whole |= {"limit_all": 0 * ones, "limit_idle": 0 * ones}
-    whole["later_idle"] = whole["later_met"] = 0.01 * np.log(window / 8)
+    # Growth without an error is left out.
     whole["later_idle_error"] = np.array([0, 1, 2, 2, np.nan])
     whole["later_met_error"] = np.array([0, 1, np.nan, np.nan, np.nan])
     found = logarithm.logarithms_of_window(whole)
@@ -260,13 +249,9 @@ def test_a_logarithm_of_the_mean_free_time_is_told_from_a_power() -> None:
     assert of["logarithm and computed terms"] == pytest.approx((1, 0, 2), abs=1e-9)
     assert of["power"][1] > 100 and of["constant"][1] > 1000
     assert of["computed"][1:] == pytest.approx((4 * 0.5**2 / (0.01**2 + 0.001**2), 4))
-
-
-def test_fits_without_enough_points_are_left_out() -> None:
-    assert lyapunov.laws(measured_exponents(np.array([10.0, 2e3])))["law"].tolist() == [
-        "constant",
-        "computed",
-    ]
+    # Fits without enough points are left out.
+    few = lyapunov.laws(measured_exponents(np.array([10.0, 2e3])))
+    assert few["law"].tolist() == ["constant", "computed"]
 
 
 @pytest.mark.parametrize(("rho", "delta"), [(0.56, 0.1), (0.7, 0.004), (0.707, 1e-4)])

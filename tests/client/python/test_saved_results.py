@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import FIRST_HITS, LIMIT, Home
+from conftest import LIMIT, Home
 from google.protobuf import json_format
 
 import ballpiston
@@ -19,9 +19,10 @@ from ballpiston.command import exit_code_of
 from ballpiston.whole_file import write_atomically
 
 
-def test_a_result_is_equal_after_it_was_saved_and_loaded(
-    first_hits: ballpiston.Result, tmp_path: Path
+def test_a_result_is_equal_after_it_was_saved_and_loaded_without_a_server(
+    first_hits: ballpiston.Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setenv("BALLPISTON_PROGRAM", "/does/not/exist")
     first_hits.save(tmp_path / "saved.json")
     loaded = ballpiston.load(tmp_path / "saved.json")
     assert loaded == first_hits
@@ -42,17 +43,6 @@ def test_the_saved_document_is_that_of_the_command_line_bit_for_bit(
     assert saved == printed
     (tmp_path / "printed.json").write_text(text)
     assert ballpiston.load(tmp_path / "printed.json") == first_hits
-
-
-def test_the_command_line_saves_the_same_arrays(home: Home, tmp_path: Path) -> None:
-    question = "first-hit --rho 0.5296 --delta 0.2 --epsilon 0.1,0.4 --exponent 1 --samples 500"
-    for name in ("saved.npz", "saved.json"):
-        home.command("run", *question.split(), "--resume", "--save", str(tmp_path / name))
-    arrays = ballpiston.load(tmp_path / "saved.json").arrays()
-    with np.load(tmp_path / "saved.npz") as saved:
-        assert sorted(saved) == sorted(arrays)
-        for name in arrays:
-            np.testing.assert_array_equal(saved[name], arrays[name], name)
 
 
 @pytest.mark.parametrize("end,code", [("kill $PPID; sleep 60; echo late", 130), ("exit 1", 2)])
@@ -110,29 +100,25 @@ def test_a_program_says_by_its_exit_code_whether_a_retry_helps(
     assert exit_code_of(not_started) == code
 
 
-def test_sigterm_interrupts_a_program_without_a_traceback(home: Home) -> None:
-    program = (
-        "import signal, sys\n"
+def program(result: str) -> str:
+    return (
+        "import pathlib, signal, sys\n"
         "from ballpiston.command import run_program\n"
-        "sys.exit(run_program(lambda _: signal.raise_signal(signal.SIGTERM) or [], []))"
+        f"sys.exit(run_program(lambda _: {result}, []))"
     )
-    interrupted = home.python(program)
+
+
+def test_sigterm_interrupts_a_program_without_a_traceback(home: Home) -> None:
+    interrupted = home.python(program("signal.raise_signal(signal.SIGTERM) or []"))
     assert interrupted.communicate(timeout=LIMIT) == ("", "")
     assert interrupted.returncode == 130
 
 
-def program_that_prints(name: str) -> str:
-    return (
-        "import sys\n"
-        "from pathlib import Path\n"
-        "from ballpiston.command import run_program\n"
-        f"sys.exit(run_program(lambda _: [Path({ascii(name)})], []))"
-    )
+PRINTER = program(r"[pathlib.Path('\xfc')]")
 
 
 def test_a_program_prints_names_of_files_that_its_encoding_cannot_spell(home: Home) -> None:
-    ascii_output = os.environ | {"PYTHONIOENCODING": "ascii"}
-    printer = home.python(program_that_prints("\xfc"), env=ascii_output)
+    printer = home.python(PRINTER, env=os.environ | {"PYTHONIOENCODING": "ascii"})
     assert printer.communicate(timeout=LIMIT) == ("ü\n", "")
 
 
@@ -144,19 +130,24 @@ def test_a_full_disk_or_closed_output_is_an_error_and_a_closed_pipe_is_none(
     out: str, code: int, why: str
 ) -> None:
     shell = f'"$0" -c "$1" {out}; exit ${{PIPESTATUS[0]}}'
-    command = ["bash", "-c", shell, sys.executable, program_that_prints("name")]
+    command = ["bash", "-c", shell, sys.executable, PRINTER]
     buffered = os.environ | {"PYTHONUNBUFFERED": ""}
     printer = subprocess.run(command, capture_output=True, text=True, env=buffered, timeout=LIMIT)
     assert (printer.returncode, bool(printer.stderr)) == (code, bool(why))
     assert why in printer.stderr
 
 
+@pytest.mark.parametrize("is_command", [False, True])
 def test_an_archive_has_the_arrays_of_the_result(
-    first_hits: ballpiston.Result, tmp_path: Path
+    is_command: bool, home: Home, first_hits: ballpiston.Result, tmp_path: Path
 ) -> None:
-    first_hits.save(tmp_path / "saved.npz")
+    saved = tmp_path / "saved.npz"
+    if is_command:
+        home.command("result", first_hits.job_name, "--save", str(saved))
+    else:
+        first_hits.save(saved)
     arrays = first_hits.arrays()
-    with np.load(tmp_path / "saved.npz") as archive:
+    with np.load(saved) as archive:
         assert set(archive) == set(arrays)
         for name, array in arrays.items():
             np.testing.assert_array_equal(archive[name], array)
@@ -164,6 +155,11 @@ def test_an_archive_has_the_arrays_of_the_result(
     assert provenance["job"] == first_hits.job_name
     assert provenance["client_version"] == ballpiston.__version__
     assert provenance["spec"]["seed"] == "7"
+    with pytest.raises(ValueError, match="numpy.load reads it"):
+        ballpiston.load(saved)
+    with pytest.raises(ValueError, match=".json or .npz"):
+        first_hits.save(tmp_path / "saved.csv")
+    assert list(tmp_path.iterdir()) == [saved]
 
 
 def test_an_archive_has_the_names_and_shapes_of_its_layout(first_hits: ballpiston.Result) -> None:
@@ -180,37 +176,13 @@ def test_an_archive_has_the_names_and_shapes_of_its_layout(first_hits: ballpisto
     assert arrays["curve_survival_time"].shape == arrays["curve_survival_value"].shape
     assert arrays["health_escapes"].tolist() == [0, 0, 0, 0]
     assert arrays["kl_divergence_cells"].shape == (4,)
-    assert arrays["provenance"].shape == ()
-
-
-def test_loading_an_archive_says_that_numpy_reads_it(
-    first_hits: ballpiston.Result, tmp_path: Path
-) -> None:
-    first_hits.save(tmp_path / "saved.npz")
-    with pytest.raises(ValueError, match="numpy.load reads it"):
-        ballpiston.load(tmp_path / "saved.npz")
-
-
-def test_loading_needs_no_server(
-    first_hits: ballpiston.Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    first_hits.save(tmp_path / "saved.json")
-    monkeypatch.setenv("BALLPISTON_PROGRAM", "/does/not/exist")
-    assert len(ballpiston.load(tmp_path / "saved.json")) == 4
-
-
-def test_a_later_version_may_add_fields(first_hits: ballpiston.Result, tmp_path: Path) -> None:
-    first_hits.save(tmp_path / "saved.json")
-    document = json.loads((tmp_path / "saved.json").read_text())
-    document["points"][0]["of_a_later_version"] = 1
-    (tmp_path / "later.json").write_text(json.dumps(document))
-    assert ballpiston.load(tmp_path / "later.json") == first_hits
 
 
 def test_a_document_of_another_program_can_be_loaded(
     first_hits: ballpiston.Result, tmp_path: Path
 ) -> None:
-    """With names in lowerCamelCase, 64-bit integers as strings, and a value without a number."""
+    """With names in lowerCamelCase, 64-bit integers as strings, a value without a number, and a
+    field of a later version."""
     first_hits.save(tmp_path / "saved.json")
     document = json.loads((tmp_path / "saved.json").read_text())
     document["job"] = json_format.MessageToDict(first_hits.job)
@@ -219,6 +191,7 @@ def test_a_document_of_another_program_can_be_loaded(
     assert isinstance(document["job"]["spec"]["target"]["samples"], str)
     assert "standardError" in estimate
     value, estimate["value"] = estimate["value"], "NaN"
+    document["points"][0]["of_a_later_version"] = 1
     (tmp_path / "other.json").write_text(json.dumps(document))
     loaded = ballpiston.load(tmp_path / "other.json")
     assert math.isnan(loaded.messages[0].estimates[0].value)
@@ -245,14 +218,6 @@ def test_other_files_are_not_results(text: str, tmp_path: Path) -> None:
         ballpiston.load(tmp_path / "other.json")
 
 
-def test_the_end_of_the_name_decides_the_format(
-    first_hits: ballpiston.Result, tmp_path: Path
-) -> None:
-    with pytest.raises(ValueError, match=".json or .npz"):
-        first_hits.save(tmp_path / "saved.csv")
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_links_permissions_and_pipes_stay(tmp_path: Path) -> None:
     target, link, pipe = (tmp_path / name for name in ("target", "link", "pipe"))
     target.touch()
@@ -267,9 +232,6 @@ def test_links_permissions_and_pipes_stay(tmp_path: Path) -> None:
     write_atomically(pipe, b"text")
     assert os.read(reader, 9) == b"text" and sorted(tmp_path.iterdir()) == [link, pipe, target]
     os.close(reader)
-
-
-def test_a_file_that_cannot_be_made_is_named_as_the_caller_names_it() -> None:
     with pytest.raises(FileNotFoundError, match="'missing/x.json'$"):
         write_atomically(Path("missing/x.json"), b"text")
 
@@ -283,10 +245,3 @@ def test_a_result_of_an_unfinished_job_has_its_finished_points(
     assert ballpiston.load(tmp_path / "saved.json") == result
     assert result.to_frame().empty
     assert "first-hit, 0 of 1 points" in repr(result)
-
-
-def test_a_result_holds_what_the_server_has(
-    client: ballpiston.Client, first_hits: ballpiston.Result
-) -> None:
-    assert client.job(first_hits.job_name).result() == first_hits
-    assert client.submit(**FIRST_HITS).specification == first_hits.specification

@@ -8,8 +8,7 @@ import signal
 import sys
 import termios
 import threading
-from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import pytest
 from conftest import ENDLESS, FIRST_HITS, LIMIT, Home, wait_until
@@ -18,7 +17,11 @@ import ballpiston
 from ballpiston.errors import ResourceExhausted, Unavailable
 from ballpiston.progress import Bar, Progress, _TqdmBar, has_terminal
 from ballpiston.v1 import ensemble_pb2
-from ballpiston.watch import Attachments, ReattachPace, watch_job
+from ballpiston.watch import Attachments, watch_job
+
+
+JOB = "ensembleJobs/1"
+CONNECT = f"ballpiston.connect(timeout={LIMIT})"
 
 
 def streams(client: ballpiston.Client) -> float:
@@ -53,10 +56,7 @@ def test_a_watch_goes_on_after_the_server_was_killed(own_home: Home) -> None:
 def test_ctrl_c_ends_the_watch_and_leaves_the_job(
     home: Home, client: ballpiston.Client, endless: ballpiston.Job
 ) -> None:
-    program = (
-        "import ballpiston, sys\n"
-        f"ballpiston.connect(timeout={LIMIT}).job(sys.argv[1]).watch()"
-    )
+    program = f"import ballpiston, sys; {CONNECT}.job(sys.argv[1]).watch()"
     watcher = home.python(program, endless.name)
     wait_until(lambda: streams(client) == 1)
     watcher.send_signal(signal.SIGINT)
@@ -103,21 +103,14 @@ def test_ctrl_c_in_a_trace_leaves_a_client_that_works(home: Home) -> None:
 def test_a_thread_watches_after_the_end_of_the_main_thread(home: Home) -> None:
     program = (
         "import ballpiston, threading\n"
-        f"client = ballpiston.connect(timeout={LIMIT})\n"
+        f"client = {CONNECT}\n"
         "def run():\n"
         "    threading.main_thread().join()\n"
-        "    print(client.run(**eval(input())).state)\n"
+        f"    print(client.run(**{ {**FIRST_HITS, 'fresh': True} }).state)\n"
         "threading.Thread(target=run).start()"
     )
-    watcher = home.python(program, stdin=-1)
-    question = repr({**FIRST_HITS, "fresh": True})
-    assert watcher.communicate(question, LIMIT) == ("succeeded\n", "")
-
-
-def test_there_is_no_bar_where_nobody_looks(home: Home) -> None:
-    program = f"import ballpiston; ballpiston.connect(timeout={LIMIT}).run(**eval(input()))"
-    watcher = home.python(program, stdin=-1)
-    assert watcher.communicate(repr({**FIRST_HITS, "fresh": True}), LIMIT) == ("", "")
+    no_bar = ""  # because standard error is a pipe
+    assert home.python(program).communicate(timeout=LIMIT) == ("succeeded\n", no_bar)
 
 
 @pytest.mark.parametrize("hidden", ["", "tqdm"])
@@ -126,48 +119,31 @@ def test_a_terminal_shows_a_bar_unless_it_is_silenced(hidden: str, home: Home) -
         "import sys\n"
         f"if '{hidden}': sys.modules['{hidden}'] = None\n"
         "import ballpiston\n"
-        f"client = ballpiston.connect(timeout={LIMIT})\n"
-        f"client.run(**{ {**FIRST_HITS, 'fresh': True} !r}, progress=sys.argv[1] == 'bar')"
+        f"{CONNECT}.run(**{ {**FIRST_HITS, 'fresh': True} }, progress=sys.argv[1] == 'bar')"
     )
-    assert "4/4 points" in on_a_terminal(program, "bar")
-    assert on_a_terminal(program, "silent") == ""
+    for progress, text in (("bar", "4/4 points"), ("silent", "")):
+        here, there = os.openpty()
+        process = home.python(program, progress, stdout=there, stderr=there)
+        os.close(there)
+        written = text_of(here)
+        assert process.wait(LIMIT) == 0, written
+        assert text in written and bool(text) == bool(written)
 
 
-def on_a_terminal(program: str, argument: str) -> str:
-    """What the program writes to a terminal."""
-    here, there = os.openpty()
-    command = [sys.executable, "-c", program, argument]
-    actions = [(os.POSIX_SPAWN_DUP2, there, 1), (os.POSIX_SPAWN_DUP2, there, 2)]
-    process = os.posix_spawn(sys.executable, command, os.environ, file_actions=actions)
-    os.close(there)
-    text = b""
-    try:
-        while part := os.read(here, 4096):
-            text += part
-    except OSError:  # the other side was closed
-        pass
-    os.close(here)
-    assert os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]) == 0, text
-    return text.decode(errors="replace")
-
-
-class WrittenBar(Bar):
-    def __init__(self) -> None:
-        super().__init__()
-        self.lines: list[tuple[float, str]] = []
-
-    def show(self, fraction: float, text: str) -> None:
-        self.lines.append((fraction, text))
-
-    def note(self, text: str) -> None:
-        self.lines.append((-1, text))
-
-    def close(self) -> None:
-        pass
+def text_of(terminal: int) -> str:
+    """All that was written to the terminal, which is closed."""
+    data = b""
+    with contextlib.suppress(OSError):  # at the end
+        while part := os.read(terminal, 4096):
+            data += part
+    os.close(terminal)
+    return data.decode(errors="replace")
 
 
 def test_a_bar_shows_points_an_estimate_and_lost_connections() -> None:
-    bar = WrittenBar()
+    bar: Any = Bar()
+    lines: list[tuple[float, str]] = []
+    bar.show = lambda *line: lines.append(line)
     progress = Progress(bar)
     message: Any = ensemble_pb2.WatchEnsembleJobResponse()
     snapshot = message.snapshot
@@ -177,7 +153,7 @@ def test_a_bar_shows_points_an_estimate_and_lost_connections() -> None:
     progress.show(message)
     progress.show(ensemble_pb2.WatchEnsembleJobResponse(heartbeat={}))
     progress.show_pause(False, 0.2)
-    assert bar.lines == [
+    assert lines == [
         (0.25, "1/4 points  mean_hit_time 57.66 ± 0.12"),
         (0.25, "1/4 points  no answer, retrying in 0.2 s"),
     ]
@@ -191,13 +167,7 @@ def test_a_bar_is_shorter_than_a_line_of_the_terminal(monkeypatch: pytest.Monkey
         for columns in (60, 30, 0):  # 0: unknown
             termios.tcsetwinsize(there, (24, columns))
             bar.show(0.5, "4/4 points" + 80 * ".")
-    data = b""
-    with contextlib.suppress(OSError):  # at the end
-        while part := os.read(here, 4096):
-            data += part
-    os.close(here)
-    lines = data.decode().split("\r")
-    assert [len(line) for line in lines] == [0, 59, 29, 79]
+    assert [len(line) for line in text_of(here).split("\r")] == [0, 59, 29, 79]
     monkeypatch.setattr("sys.stderr", None)
     assert not has_terminal()
 
@@ -215,29 +185,25 @@ def test_the_time_left_does_not_count_the_time_in_the_queue(
 
 
 def test_pauses_double_until_the_server_is_heard() -> None:
-    pace = ReattachPace(first=1, longest=4, give_up_after=1000)
+    pace = Attachments(JOB, first=1, longest=4, give_up_after=1000)
     for expected in (1, 2, 4, 4):
         pause = pace.next_pause(now=0)
         assert pause is not None and expected <= pause <= 1.25 * expected
-    pace.heard()
+    pace.handle(update("", RUNNING))
     pause = pace.next_pause(now=10)
     assert pause is not None and pause <= 1.25
-
-
-def test_a_pause_is_as_long_as_the_server_asks() -> None:
-    pace = ReattachPace(first=1, longest=4, give_up_after=100)
-    pause = pace.next_pause(now=0, least=10)
+    pause = pace.next_pause(now=10, least=10)  # as the server asks
     assert pause is not None and 10 <= pause <= 12.5
-    assert pace.next_pause(now=0, least=200) is None
+    assert pace.next_pause(now=10, least=2000) is None
 
 
 def test_a_watch_gives_up_after_the_configured_time() -> None:
-    pace = ReattachPace(first=1, longest=4, give_up_after=10)
+    pace = Attachments(JOB, first=1, longest=4, give_up_after=10)
     for lost in (100, 200):  # the first time after a long sleep of this process
         assert pace.next_pause(now=lost) is not None
         assert pace.next_pause(now=lost + 5) is not None
         assert pace.next_pause(now=lost + 9.5) is None
-        pace.heard()
+        pace.handle(update("", RUNNING))
 
 
 class ScriptedServer:
@@ -266,26 +232,23 @@ def test_a_watch_passes_the_last_resume_token_on() -> None:
     server: Any = ScriptedServer(
         [update("a", RUNNING), update("b", RUNNING)], [], [update("c", SUCCEEDED)]
     )
-    at_once = ReattachPace(first=0, longest=0, give_up_after=LIMIT)
-    job = watch_job(server, "ensembleJobs/1", Progress(None), at_once)
+    at_once = Attachments(JOB, first=0, longest=0, give_up_after=LIMIT)
+    job = watch_job(server, at_once, Progress(None))
     assert job.state == SUCCEEDED
     assert server.tokens == ["", "b", "b"]
 
 
 def test_a_watch_that_gives_up_says_why() -> None:
+    server: Any = ScriptedServer()
+    hasty = Attachments(JOB, first=0.001, longest=0, give_up_after=0)
     with pytest.raises(Unavailable, match="gave up watching after 0 s.*ended the watch before"):
-        watch_job(
-            cast(Any, ScriptedServer()),
-            "ensembleJobs/1",
-            Progress(None),
-            ReattachPace(first=0.001, longest=0, give_up_after=0),
-        )
+        watch_job(server, hasty, Progress(None))
 
 
 def test_a_watch_waits_for_a_busy_server() -> None:
     busy = ResourceExhausted("too many", code="RESOURCE_EXHAUSTED", reason="TOO_MANY_STREAMS")
-    assert Attachments("ensembleJobs/1").pause_after(busy) > 0
-    hasty = Attachments("ensembleJobs/1", ReattachPace(give_up_after=0))
+    assert Attachments(JOB).pause_after(busy) > 0
+    hasty = Attachments(JOB, give_up_after=0)
     with pytest.raises(ResourceExhausted, match="too many"):
         hasty.pause_after(busy)
 
@@ -306,20 +269,3 @@ def test_an_error_ends_the_watch_and_the_message_says_how_to_watch_again(
     with ballpiston.connect(address, timeout=LIMIT) as named:
         with pytest.raises(ballpiston.Unauthenticated, match=f"{endless.name} --server {address}$"):
             named.job(endless.name).watch()
-
-
-def test_a_watch_of_no_job_is_an_error(client: ballpiston.Client) -> None:
-    job = client.submit(**FIRST_HITS, fresh=True)
-    job.watch()
-    job.delete()
-    with pytest.raises(ballpiston.NotFound) as no_job:
-        job.watch()
-    assert "goes on" not in str(no_job.value)
-
-
-def test_a_program_that_is_missing_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("BALLPISTON_PROGRAM", str(tmp_path / "ballpiston"))
-    with pytest.raises(ballpiston.NoPrivateServer, match="cannot start the private server"):
-        ballpiston.connect()

@@ -9,12 +9,10 @@ proportional to the velocities.
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle, Polygon, Rectangle
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import cell_outline, style
-from ballpiston.figures.parts.asking import RHO, start_of
+from ballpiston.figures.parts.asking import RHO, Client
 from ballpiston.figures.parts.tables import Tables, pick, table
 
 _ARROW = 0.2  # length for a velocity of 1, in cells
@@ -23,7 +21,7 @@ _AWAY = 0.045  # distance of a dimension line from the measured length
 
 def measure(client: Client, *, rho: float = RHO, delta: float = 0.15, seed: int = 17) -> Tables:
     """One row: the geometry and the random start. With the default seed no arrow covers a label."""
-    start = start_of(client, rho=rho, delta=delta, seed=seed)
+    start = next(client.trace(rho=rho, delta=delta, seed=seed, events=1))
     row = {name: start[name] for name in ("rho", "delta", "lambda", "eta")}
     row |= {f"ball_{name}": value for name, value in start["balls"][0].items()}
     row |= {f"piston_{name}": value for name, value in start["pistons"][0].items()}
@@ -31,7 +29,7 @@ def measure(client: Client, *, rho: float = RHO, delta: float = 0.15, seed: int 
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """The pair with its dimension lines."""
     at = pick(tables["cell"], 0)
     figure = style.picture(960, 670)
@@ -40,13 +38,8 @@ def draw(tables: Tables) -> Figure:
     _draw_walls(axes, at)
     _draw_parameters(axes, at)
     _draw_bodies(axes, at)
-    axes.text(
-        -0.5,
-        0.575,
-        "ρ = {rho:.6g}     λ = tan θ = {lambda:.4g}     δ = {delta:.4g}     η = {eta:.4g}".format(
-            **at
-        ),
-    )
+    text = "ρ = {rho:.6g}     λ = tan θ = {lambda:.4g}     δ = {delta:.4g}     η = {eta:.4g}"
+    axes.text(-0.5, 0.575, text.format(**at))
     return figure
 
 
@@ -54,17 +47,16 @@ def _draw_walls(axes: Any, at: dict[str, Any]) -> None:
     """The discs, their overlap behind the piston cell, the unit square and the cell's outline."""
     edge = {"edgecolor": style.EDGE, "linewidth": 0.8}
     for centre in cell_outline.CENTRES:
-        axes.add_patch(Circle(centre, at["rho"], facecolor=style.DISC))
-        axes.add_patch(Circle(centre, at["rho"], fill=False, **edge))
+        axes.add_patch(Circle(centre, at["rho"], facecolor=style.DISC, **edge))
     overlap = cell_outline.overlap(at["rho"])
     axes.add_patch(Polygon(overlap, facecolor=style.OVERLAP))
-    axes.add_patch(Polygon(cell_outline.outline(at["rho"]), facecolor="white"))
+    outline = cell_outline.outline(at["rho"])
+    axes.add_patch(Polygon(outline, facecolor="white"))
     corner = (_first(at), -at["eta"] / 2)
     length = at["lambda"] + 2 * at["delta"]
     axes.add_patch(Rectangle(corner, length, at["eta"], facecolor=style.REACH, **edge))
     axes.add_patch(Polygon(overlap, fill=False, linestyle=(0, (4, 3)), **edge))
     axes.add_patch(Rectangle((-0.5, -0.5), 1, 1, fill=False, linestyle=(0, (8, 5)), **edge))
-    outline = cell_outline.outline(at["rho"])
     axes.add_patch(Polygon(outline, fill=False, edgecolor=style.BLACK, linewidth=2))
 
 
@@ -125,7 +117,6 @@ def _draw_bodies(axes: Any, at: dict[str, Any]) -> None:
     x, eta = at["piston_x"], at["eta"]
     axes.plot([x, x], [-eta / 2, eta / 2], color=style.BLUE, linewidth=5, solid_capstyle="butt")
     axes.quiver(x, 0, at["piston_vx"], 0, color=style.BLUE, **arrow)
-    axes.plot(at["ball_x"], at["ball_y"], "o", color=style.ORANGE, markersize=9)
-    axes.quiver(
-        at["ball_x"], at["ball_y"], at["ball_vx"], at["ball_vy"], color=style.ORANGE, **arrow
-    )
+    x, y, vx, vy = (at[f"ball_{name}"] for name in ("x", "y", "vx", "vy"))
+    axes.plot(x, y, "o", color=style.ORANGE, markersize=9)
+    axes.quiver(x, y, vx, vy, color=style.ORANGE, **arrow)

@@ -9,13 +9,11 @@ surface, cuts off the lower end of the right tip.
 from typing import Any
 
 import numpy as np
-from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
+from matplotlib.colors import LightSource
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import cell_outline, style
-from ballpiston.figures.parts.asking import RHO
+from ballpiston.figures.parts.asking import RHO, Client
 from ballpiston.figures.parts.tables import FloatArray, Tables, closed_forms, pick
 
 _WALL, _FLOOR, _EDGE = "#c3cfe6", "#f4f4f4", "#404040"
@@ -29,7 +27,7 @@ def measure(client: Client, *, rho: float = RHO, delta: float = 0.15) -> Tables:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """The walls, the floor and the collision surface, with labels beside them."""
     at = pick(tables["cell-3d"], 0)
     tip = float(0.5 - at["lambda"] / 2)
@@ -48,7 +46,8 @@ def draw(tables: Tables) -> Figure:
     axes.set(xlim=(-tip, tip), ylim=(-tip, tip), zlim=(low, ceiling))
     axes.set_box_aspect((1, 1, (ceiling - low) / (2 * tip)), zoom=1.15)
     for depth, disc in enumerate((3, 2, 0, 1)):  # from the back to the front
-        _draw_wall(axes, cell_outline.arc(at["rho"], disc), bottom, ceiling, depth)
+        x, y = cell_outline.outline(at["rho"], disc + np.linspace(0, 1, 49)).T
+        _draw_wall(axes, x, y, bottom(x), ceiling, depth)
     _draw_strip(axes, at["rho"], np.linspace(-tip, low, 60), bottom, _FLOOR)
     _draw_strip(axes, at["rho"], np.linspace(low, tip, 60), bottom, style.ORANGE)
     style.axis_arrows(axes, (0.9 * tip, 0.3 * tip, low), 0.35 * tip, ("q₁", "q₂", "q₃"))
@@ -64,24 +63,15 @@ def draw(tables: Tables) -> Figure:
     return figure
 
 
-def _draw_wall(axes: Any, arc: FloatArray, bottom: Any, ceiling: float, depth: int) -> None:
-    """On one arc, with light from the front, and its edges."""
-    x, y = arc[:, 0], arc[:, 1]
-    z = bottom(x)
-    faces = [
-        [(x[i], y[i], z[i]), (x[j], y[j], z[j]), (x[j], y[j], ceiling), (x[i], y[i], ceiling)]
-        for i, j in zip(range(len(x) - 1), range(1, len(x)))
-    ]
-    normals = np.column_stack([-np.diff(y), np.diff(x)])
-    light = np.abs(normals @ (0.9, -0.45)) / np.linalg.norm(normals, axis=1)
-    colours = np.column_stack([np.outer(0.75 + 0.25 * light, to_rgb(_WALL)), np.ones(len(faces))])
-    collection = Poly3DCollection(faces, facecolors=colours, edgecolors=colours, zorder=depth)
-    axes.add_collection3d(collection)
+def _draw_wall(
+    axes: Any, x: FloatArray, y: FloatArray, z: FloatArray, ceiling: float, depth: int
+) -> None:
+    """On one arc, from z to the ceiling, with light from the front, and its edges."""
+    wall = np.array([x, x]), np.array([y, y]), np.array([z, np.full_like(x, ceiling)])
+    shaded: dict[str, Any] = {"color": _WALL, "lightsource": LightSource(150, 0), "ccount": 49}
+    axes.plot_surface(*wall, antialiased=False, zorder=depth, **shaded)
     edge = {"color": _EDGE, "linewidth": 1.2, "zorder": depth}
-    axes.plot(x, y, z, **edge)
-    axes.plot(x, y, np.full_like(x, ceiling), **edge)
-    for i in (0, -1):
-        axes.plot([x[i], x[i]], [y[i], y[i]], [z[i], ceiling], **edge)
+    axes.plot(*(np.concatenate([a, b[::-1], a[:1]]) for a, b in wall), **edge)
 
 
 def _draw_strip(axes: Any, rho: float, x: FloatArray, bottom: Any, colour: str) -> None:

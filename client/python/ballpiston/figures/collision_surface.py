@@ -10,12 +10,10 @@ epsilon = 1/4 both circles contribute, above 1/4 one circle.
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO
+from ballpiston.figures.parts.asking import RHO, Client
 from ballpiston.figures.parts.tables import FloatArray, Tables, closed_forms
 
 
@@ -37,8 +35,8 @@ def circle_at(epsilon: float, sigma: int, count: int = 721) -> tuple[FloatArray,
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
-    """The hemisphere, the plane and the circles."""
+def draw(tables: Tables) -> style.Figure:
+    """The hemisphere with its meridians and parallels, the plane and the circles."""
     epsilon = float(tables["collision-surface"]["epsilon"][0])
     figure = style.picture(960, 800)
     axes = figure.add_subplot(projection="3d", computed_zorder=False)
@@ -50,7 +48,10 @@ def draw(tables: Tables) -> Figure:
     turn = np.linspace(0, 2 * np.pi, 181)
     rim = _in_plane_frame(np.zeros_like(turn), np.cos(turn), np.sin(turn))
     axes.add_collection3d(Poly3DCollection([rim], facecolor="#c9d3ea", alpha=0.8))
-    _draw_net(axes, turn)
+    rise, around = np.meshgrid(np.linspace(0, np.pi / 2, 91), turn, indexing="ij")
+    across = np.cos(rise) * np.cos(around), np.cos(rise) * np.sin(around)
+    net = np.moveaxis(_in_plane_frame(np.sin(rise), *across), -1, 0)
+    axes.plot_wireframe(*net, rstride=15, cstride=15, color="#b4b4b4", linewidth=0.8)
     for sigma in (-1, 1):
         _draw_circle(axes, epsilon, sigma)
     _draw_normal(axes)
@@ -67,21 +68,7 @@ def draw(tables: Tables) -> Figure:
 
 def _in_plane_frame(n: FloatArray, t: FloatArray, v2: FloatArray) -> FloatArray:
     """From components along n, t = (1, 0, 1)/sqrt 2 and v2."""
-    return np.column_stack([(t - n) / np.sqrt(2), v2, (t + n) / np.sqrt(2)])
-
-
-def _draw_net(axes: Any, turn: FloatArray) -> None:
-    """Meridians and parallels of the hemisphere."""
-    rise = np.linspace(0, np.pi / 2, 46)
-    lines = [
-        _in_plane_frame(np.sin(rise), np.cos(rise) * np.cos(phi), np.cos(rise) * np.sin(phi))
-        for phi in np.arange(12) * np.pi / 6
-    ]
-    for a in np.arange(6) * np.pi / 12:
-        level = np.full_like(turn, np.sin(a))
-        lines.append(_in_plane_frame(level, np.cos(a) * np.cos(turn), np.cos(a) * np.sin(turn)))
-    for line in lines:
-        axes.plot(*line.T, color="#b4b4b4", linewidth=0.8)
+    return np.stack([(t - n) / np.sqrt(2), v2, (t + n) / np.sqrt(2)], axis=-1)
 
 
 def _draw_circle(axes: Any, epsilon: float, sigma: int) -> None:
@@ -95,6 +82,6 @@ def _draw_circle(axes: Any, epsilon: float, sigma: int) -> None:
 
 
 def _draw_normal(axes: Any) -> None:
-    normal = _in_plane_frame(np.array([1.22]), np.zeros(1), np.zeros(1))[0]
+    normal = 1.22 * np.array([-1, 0, 1]) / np.sqrt(2)
     axes.quiver(0, 0, 0, *normal, color=style.BLUE, linewidth=2.5, arrow_length_ratio=0.1)
     axes.text(*(1.08 * normal), "n", color=style.BLUE)

@@ -7,13 +7,11 @@ gas, from Varadhan's formula.
 Time on two cores: quick 3 s, default 50 s, full 5 min.
 """
 
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, answer, check_chains, first
+from ballpiston.figures.parts.asking import RHO, Client, answer, check_chains
 from ballpiston.figures.parts.tables import Table, Tables, estimates, rows
-from ballpiston.parameter_lists import Numbers, Shapes
+from ballpiston.parameter_lists import Numbers, Shapes, number_list
 
 EFFORT = {
     "quick": {"billiard_samples": 3000, "samples": 1000},
@@ -35,7 +33,7 @@ def measure(
     """Estimates of the billiard at each delta, in a ring of `billiard_cells`, and of the jump
     process, the limit delta -> 0, in each ring of `cells`. Samples are replicas of a ring."""
 
-    check_chains("cells", cells)
+    check_chains(cells)
 
     def gas(model: str, delta: Numbers, cells: Shapes, samples: float) -> Table:
         question = {"rho": rho, "delta": delta, "cells": cells, "temperature": 1, "seed": seed}
@@ -45,12 +43,12 @@ def measure(
     return {
         "conductivity-billiard": gas("billiard", delta, billiard_cells, billiard_samples),
         # The correction of the limit depends neither on rho nor on delta.
-        "conductivity-rings": gas("markov", first("delta", delta), cells, samples),
+        "conductivity-rings": gas("markov", number_list("delta", delta)[0], cells, samples),
     }
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Both panels."""
     billiard = rows(tables["conductivity-billiard"], name="conductivity_ratio")
     rings = rows(tables["conductivity-rings"], name="conductivity_ratio")

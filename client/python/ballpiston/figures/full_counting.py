@@ -8,14 +8,11 @@ principle. Lines are polynomials in 1/N. Time on one core: quick 30 s, default 3
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
-from ballpiston.figures.parts.asking import RHO, answer, check_chains
+from ballpiston.figures.parts.asking import RHO, Client, Shapes, answer, check_chains
 from ballpiston.figures.parts.charge import combined, correlations
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, rows, table
-from ballpiston.parameter_lists import Shapes
 from ballpiston.point import Point
 
 EFFORT = {
@@ -42,7 +39,7 @@ def measure(
     seed: int = 0,
 ) -> Tables:
     """The scaled cumulants of each chain, from `collisions` exchanges, and their extrapolations."""
-    check_chains("cells", cells)
+    check_chains(cells)
     if hot == cold:
         raise ValueError(f"hot and cold have to differ; both are {hot:g}")
     question = {"rho": rho, "delta": delta, "cells": cells, "hot": hot, "cold": cold}
@@ -102,9 +99,8 @@ def _powers(x: FloatArray) -> FloatArray:
 
 def transient(time: FloatArray) -> FloatArray:
     """What exp(-t) in a cumulant adds to [c_n(2 t) - c_n(t)]/t."""
-    finite = np.where(np.isfinite(time), time, 1.0)
-    added: FloatArray = (np.exp(-2 * finite) - np.exp(-finite)) / finite
-    return np.where(np.isfinite(time), added, 0.0)
+    added: FloatArray = (np.exp(-2 * time) - np.exp(-time)) / time
+    return added
 
 
 def extrapolated(found: Table, hot: float, cold: float) -> Table:
@@ -128,7 +124,7 @@ def extrapolated(found: Table, hot: float, cold: float) -> Table:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """One panel for each cumulant. A point is the mean over the windows, without the transient."""
     names = ("mean", "variance", "third cumulant", "fourth cumulant")
     figure, panels = style.panels((960, 720), 2, 2, names)

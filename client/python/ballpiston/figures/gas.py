@@ -9,13 +9,12 @@ the last column and row.
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
+from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon, Rectangle
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import cell_outline, style
-from ballpiston.figures.parts.asking import RHO, start_of
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, pick, stacked, table
+from ballpiston.figures.parts.asking import RHO, Client
+from ballpiston.figures.parts.tables import Table, Tables, pick, stacked, table
 
 _ARROW = 0.13  # length for a thermal velocity, sqrt(T), in cells
 _BRIGHTEST = 4.0  # the colour is the same for all higher energies, in units of T
@@ -33,8 +32,8 @@ def measure(
 ) -> Tables:
     """The start of an orbit: all balls, all pistons, and one row with the geometry. `cells` is a
     lattice, NxM, or a chain, N."""
-    orbit = {"rho": rho, "delta": delta, "cells": cells, "temperature": temperature}
-    start = start_of(client, seed=seed, **orbit)
+    gas: dict[str, Any] = {"rho": rho, "delta": delta, "cells": cells, "temperature": temperature}
+    start = next(client.trace(events=1, seed=seed, **gas))
     columns, _, lines = start["cells"].partition("x")
     row = {name: start[name] for name in ("rho", "delta", "lambda", "eta", "temperature")}
     row |= {"columns": int(columns), "rows": int(lines or 1)}
@@ -46,7 +45,7 @@ def measure(
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """The gas, with a scale of energies."""
     at = pick(tables["gas-geometry"], 0)
     wide, high = at["columns"] + 2 * _MARGIN, at["rows"] + 2 * _MARGIN
@@ -56,7 +55,12 @@ def draw(tables: Tables) -> Figure:
     axes.set(xlim=(corner[0], corner[0] + wide), ylim=(corner[1], corner[1] + high))
     axes.add_patch(Rectangle(corner, wide, high, facecolor=style.DISC))
     pistons = _with_copies(tables["gas-pistons"], at)
-    reaches = [_piston_cell(body, at) for body in _rows(pistons)]
+    place = np.column_stack([pistons["x"], pistons["y"]])
+    is_along = np.column_stack([pistons["vertical"], ~pistons["vertical"]])  # moves along x, or y
+    half = np.where(is_along, at["lambda"] / 2 + at["delta"], at["eta"] / 2)
+    # A piston's cell is around the edge of the ball's cell that is nearest.
+    corners = np.where(is_along, np.floor(place) + 0.5, place) - half
+    reaches = [(corner, *size) for corner, size in zip(corners, 2 * half)]
     for reach in reaches:
         axes.add_patch(Rectangle(*reach, facecolor="#efefef", edgecolor=style.EDGE))
     for i in range(int(at["columns"])):
@@ -66,10 +70,13 @@ def draw(tables: Tables) -> Figure:
     for reach in reaches:
         axes.add_patch(Rectangle(*reach, fill=False, edgecolor=style.EDGE, linestyle=(0, (4, 4))))
     scale = style.energy_bar(figure, axes, _BRIGHTEST, "energy/T", shrink=0.7, pad=0.01)
-    _draw_pistons(axes, pistons, at, scale)
-    _draw_arrows(axes, tables["gas-balls"], at, scale)
+    half = np.where(is_along, 0, at["eta"] / 2)
+    colours = _draw_arrows(axes, pistons, at["temperature"], scale)
+    segments = np.stack([place - half, place + half], axis=1)
+    shown: dict[str, Any] = {"colors": colours, "linewidths": 4, "capstyle": "butt", "zorder": 2}
+    axes.add_collection(LineCollection(segments, **shown))
     balls = tables["gas-balls"]
-    colours = scale.to_rgba(balls["energy"] / at["temperature"])
+    colours = _draw_arrows(axes, balls, at["temperature"], scale)
     axes.scatter(balls["x"], balls["y"], c=colours, s=36, zorder=4)
     return figure
 
@@ -83,38 +90,10 @@ def _with_copies(pistons: Table, at: dict[str, Any]) -> Table:
     return stacked([pistons, copies])
 
 
-def _rows(whole: Table) -> list[dict[str, Any]]:
-    return [dict(zip(whole, row)) for row in zip(*whole.values())]
-
-
-def _piston_cell(piston: dict[str, Any], at: dict[str, Any]) -> tuple[FloatArray, float, float]:
-    """Corner, width and height. It is around the edge of the ball's cell that is nearest."""
-    reach = at["lambda"] + 2 * at["delta"]
-    middle = np.array([piston["x"], piston["y"]])
-    along = 0 if piston["vertical"] else 1
-    middle[along] = np.floor(middle[along]) + 0.5
-    size = np.array([reach, at["eta"]] if piston["vertical"] else [at["eta"], reach])
-    return middle - size / 2, float(size[0]), float(size[1])
-
-
-def _draw_pistons(axes: Any, pistons: Table, at: dict[str, Any], scale: Any) -> None:
-    for body in _rows(pistons):
-        half = at["eta"] / 2 * np.array([0, 1] if body["vertical"] else [1, 0])
-        ends = np.array([body["x"], body["y"]]) + np.outer([-1, 1], half)
-        colour = scale.to_rgba(body["energy"] / at["temperature"])
-        axes.plot(*ends.T, color=colour, linewidth=4, solid_capstyle="butt")
-    _draw_arrows(axes, pistons, at, scale)
-
-
-def _draw_arrows(axes: Any, bodies: Table, at: dict[str, Any], scale: Any) -> None:
-    length = _ARROW / np.sqrt(at["temperature"])
-    colours = scale.to_rgba(bodies["energy"] / at["temperature"])
-    axes.quiver(
-        *(bodies[name] for name in ("x", "y", "vx", "vy")),
-        color=colours,
-        angles="xy",
-        scale_units="xy",
-        scale=1 / length,
-        width=0.003,
-        zorder=4,
-    )
+def _draw_arrows(axes: Any, bodies: Table, temperature: float, scale: Any) -> Any:
+    """The velocities; returns the colours of the energies."""
+    colours = scale.to_rgba(bodies["energy"] / temperature)
+    arrow = {"angles": "xy", "scale_units": "xy", "scale": np.sqrt(temperature) / _ARROW}
+    x, y, vx, vy = (bodies[name] for name in ("x", "y", "vx", "vy"))
+    axes.quiver(x, y, vx, vy, color=colours, width=0.003, zorder=4, **arrow)
+    return colours

@@ -12,13 +12,10 @@ Time on two cores: quick 1 s, default 25 s, full 8 min.
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, first_hits
+from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer
 from ballpiston.figures.parts.tables import Tables, closed_forms, curves, distinct, rows
-from ballpiston.parameter_lists import Numbers
 
 EFFORT = {
     "quick": {"delta": "0.325,0.2,0.1,0.05", "samples": 30_000},
@@ -42,8 +39,9 @@ def measure(
     At energies other than 0 and 1/2 their limit is the exponential law with the same mean free
     time. `t` is the time in units of the conditional mean free time. `samples` are the first
     hits of each line."""
-    result = first_hits(client, rho, delta, epsilon, exponent, samples, seed)
-    survival = rows(curves(result), name="survival")
+    question = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
+    result = answer(client, "first-hit", samples=samples, seed=seed, **question)
+    survival = curves(result, "survival")
     forms = client.analytic(rho, delta, epsilon)
     units = closed_forms(forms, "delta", "epsilon", "mean_free_time_conditional")
     unit_of = {(d, e): unit for d, e, unit in zip(*units.values())}
@@ -60,14 +58,13 @@ def measure(
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Of several exponents only the first one."""
     data = tables["hitting-time"]
     data = rows(data, exponent=data["exponent"][0])
     energies = distinct(data["epsilon"])
-    shared: dict[str, Any] = {"sharex": True, "sharey": "row", "squeeze": False}
     width = max(640, 100 + 320 * len(energies))
-    figure, panels = style.panels((width, 760), 2, len(energies), **shared)
+    figure, panels = style.panels((width, 760), 2, len(energies), **style.SHARED)
     longest = data["t"].max()
     t = np.linspace(0, longest, 200)
     exponential: dict[str, Any] = {"color": style.BLACK, "linewidth": 1.2, "dashes": (6, 4)}

@@ -10,13 +10,11 @@ Time on two cores: quick 1 s, default 10 s, full 1 min.
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import ENERGIES, RHO, first_hits
-from ballpiston.figures.parts.tables import Table, Tables, distinct, histograms, rows, stacked
-from ballpiston.parameter_lists import Numbers
+from ballpiston.figures.parts.asking import ENERGIES, RHO, Client, Numbers, answer
+from ballpiston.figures.parts.tables import Table, Tables, distinct, groups
+from ballpiston.figures.parts.tables import histograms, rows, stacked
 
 EFFORT = {
     "quick": {"samples": 20_000, "merged": 40},
@@ -40,7 +38,8 @@ def measure(
     """Histograms with wider bins: `merged` of the server's 1000 bins are one bin of the picture.
     Fewer samples need wider bins; otherwise the noise hides the deviation. `samples` are the first
     hits of each panel."""
-    result = first_hits(client, rho, delta, epsilon, exponent, samples, seed)
+    question = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
+    result = answer(client, "first-hit", samples=samples, seed=seed, **question)
     return {"ingoing-law": merge(rows(histograms(result), name="alpha"), merged)}
 
 
@@ -48,8 +47,7 @@ def merge(bins: Table, merged: int) -> Table:
     """Histograms with `merged` neighbouring bins in one. Densities are means over a bin; `error` is
     the standard error; that of an empty bin is the error of the count expected from h^(1)."""
     keys = ("delta", "epsilon", "exponent", "sigma")
-    found = distinct(zip(*(bins[name] for name in keys)))
-    return stacked(_merged(rows(bins, **dict(zip(keys, key))), keys, merged) for key in found)
+    return stacked(_merged(part, keys, merged) for _, part in groups(bins, *keys))
 
 
 def _merged(bins: Table, keys: tuple[str, ...], merged: int) -> Table:
@@ -69,14 +67,13 @@ def _merged(bins: Table, keys: tuple[str, ...], merged: int) -> Table:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Of several exponents only the first one."""
     data = tables["ingoing-law"]
     data = rows(data, exponent=data["exponent"][0])
     deltas, energies = distinct(data["delta"]), distinct(data["epsilon"])
     size = 760 if len(deltas) < 3 else 300 * len(deltas) + 60, 210 * len(energies) + 120
-    shared: dict[str, Any] = {"sharex": True, "sharey": "row", "squeeze": False}
-    figure, panels = style.panels(size, len(energies), len(deltas), **shared)
+    figure, panels = style.panels(size, len(energies), len(deltas), **style.SHARED)
     for row, epsilon in zip(panels, energies):
         for axes, delta in zip(row, deltas):
             for sigma, sign, colour in _SIGNS:

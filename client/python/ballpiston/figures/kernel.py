@@ -9,13 +9,10 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO
+from ballpiston.figures.parts.asking import RHO, Client, Numbers
 from ballpiston.figures.parts.tables import Table, Tables, rows, stacked
-from ballpiston.parameter_lists import Numbers
 
 EFFORT = {"quick": {"collisions": 1e4, "bins": 8}, "full": {"collisions": 3e6, "bins": 40}}
 
@@ -41,20 +38,16 @@ def measure(
     forms = client.analytic(rho, delta, epsilon, outgoing_epsilon="0.001:0.499:499")
     energies = forms["epsilon"][0]
     outgoing = np.arange(1, 500) / 1000
-    exact = [
-        {
-            "epsilon": energy,
-            "outgoing": outgoing,
-            "density": kernel / rate,  # W is a density of rates
-        }
+    exact = stacked(  # W is a density of rates
+        {"epsilon": energy, "outgoing": outgoing, "density": kernel / rate}
         for energy, rate, kernel in zip(energies, forms["f"][0], forms["kernel"][0])
-    ]
+    )
     pair = {"rho": rho, "delta": delta, "model": "billiard", "seed": seed}
     names = ("piston_energy", "piston_energy_after")
     sample = client.sample("equilibrium", collisions=collisions, **pair)
     parts = [[part[name].copy() for name in names] for part in sample]
     hits = dict(zip(names, map(np.concatenate, zip(*parts))))
-    return {"kernel-exact": stacked(exact), "kernel-measured": densities(energies, hits, bins)}
+    return {"kernel-exact": exact, "kernel-measured": densities(energies, hits, bins)}
 
 
 def densities(energies: Iterable[float], collisions: Table, bins: int) -> Table:
@@ -88,7 +81,7 @@ def _densities_at(energy: float, collisions: Table, bins: int) -> dict[str, Any]
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """One panel for each energy before the collision."""
     energies = style.series(tables["kernel-exact"], "epsilon", "ε")
     lines = (len(energies) + 1) // 2

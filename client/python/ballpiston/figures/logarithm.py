@@ -16,11 +16,9 @@ The program `slow_pistons` measures them. Time on one core: quick 5 s, default 2
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
-from ballpiston.figures.parts.asking import RHO
+from ballpiston.figures.parts.asking import RHO, Client, Numbers, number_list
 from ballpiston.figures.parts.programs import table_of
 from ballpiston.figures.parts.tables import (
     FloatArray,
@@ -31,7 +29,6 @@ from ballpiston.figures.parts.tables import (
     stacked,
     table,
 )
-from ballpiston.parameter_lists import Numbers, number_list
 
 EFFORT: dict[str, dict[str, Any]] = {"quick": {"samples": 2048}, "full": {"samples": 131_072}}
 
@@ -78,10 +75,13 @@ def measure(
 def excess(windows: Table, part: str) -> tuple[FloatArray, FloatArray]:
     """The difference of a part from its limit, a share of the limit's integral time, and its
     error."""
-    limits = {"all": windows["limit_all"], "idle": windows["limit_idle"]}
-    limits["met"] = limits["all"] - limits["idle"]
-    value = windows[part] - limits[part]
+    value = windows[part] - _limit(windows, part)
     return value / _INTEGRAL_TIME, windows[f"{part}_error"] / _INTEGRAL_TIME
+
+
+def _limit(windows: Table, part: str) -> FloatArray:
+    met: FloatArray = windows["limit_all"] - windows["limit_idle"]
+    return met if part == "met" else windows[f"limit_{part}"]
 
 
 def logarithms_of_delta(whole: Table) -> Table:
@@ -117,9 +117,7 @@ def logarithms_of_window(whole: Table) -> Table:
 def _growth(windows: Table, part: str) -> fits.Fit:
     """The errors are those of increments that are independent of each other. Increments without
     enough events have none, and are left out."""
-    limit = windows["limit_idle"] * (1 if part == "idle" else -1)
-    limit += 0 if part == "idle" else windows["limit_all"]
-    value = np.diff(windows[f"later_{part}"] - limit)
+    value = np.diff(windows[f"later_{part}"] - _limit(windows, part))
     error = np.sqrt(np.maximum(np.diff(windows[f"later_{part}_error"] ** 2), 0))
     measured = error > 0
     shorter = windows["window"][:-1]
@@ -128,7 +126,7 @@ def _growth(windows: Table, part: str) -> fits.Fit:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Both panels."""
     whole = tables["logarithm"]
     growth = f"growth beyond 8, δ = {whole['delta'][0]:g}"

@@ -14,11 +14,9 @@ import math
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
-from ballpiston.figures.parts.asking import RHO, answer, mean_free_times
+from ballpiston.figures.parts.asking import RHO, Client, answer, mean_free_times
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, pick, rows, table
 from ballpiston.figures.parts.tangent_growth import second_exponent
 from ballpiston.parameter_lists import Numbers, number_list
@@ -116,7 +114,7 @@ def laws(whole: Table) -> Table:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Both panels."""
     figure, (left, right) = style.panels((960, 480), 1, 2, ("λ$_2$τ", "λ$_2$τ - ln τ"))
     found, curve = tables["lyapunov"], tables["lyapunov-curve"]
@@ -142,13 +140,10 @@ def _above_logarithm(part: Table, name: str) -> FloatArray:
 def _draw_growth(axes: Any, found: Table, curve: Table, limit: float) -> None:
     tau = np.geomspace(found["tau"].min() / 2, found["tau"].max() * 2, 100)
     axes.plot(tau, np.log(tau) + limit, ":", color=style.BLACK, label=f"ln τ + {limit:.3f}")
-    is_shown = curve["tau"] < tau[-1]
-    axes.plot(
-        curve["tau"][is_shown], curve["computed"][is_shown], color=style.BLACK, label="computed"
-    )
-    style.error_points(
-        axes, found["tau"], found["value"], found["value_error"], style.BLUE, "billiard"
-    )
+    shown = pick(curve, curve["tau"] < tau[-1])
+    axes.plot(shown["tau"], shown["computed"], color=style.BLACK, label="computed")
+    measured = found["tau"], found["value"], found["value_error"]
+    style.error_points(axes, *measured, style.BLUE, "billiard")
     axes.set_xscale("log")
     axes.set(xlabel="mean free time τ", xlim=(tau[0], tau[-1]))
     axes.legend(loc="upper left")

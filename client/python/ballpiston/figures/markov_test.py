@@ -14,13 +14,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import oscillation, style
-from ballpiston.figures.parts.asking import ENERGIES, RHO, divergences, first_hits
-from ballpiston.figures.parts.tables import Table, Tables, distinct, pick, rows, stacked
-from ballpiston.parameter_lists import Numbers
+from ballpiston.figures.parts.asking import ENERGIES, RHO, Client, Numbers, answer, divergences
+from ballpiston.figures.parts.tables import Table, Tables, distinct, groups, pick, rows, stacked
 
 EFFORT: dict[str, dict[str, Any]] = {
     "quick": {"delta": "0.1:0.325:16:log", "samples": 30_000, "synthetic": 20},
@@ -41,7 +38,8 @@ def measure(
 ) -> Tables:
     """`samples` are the first hits of each point, `synthetic` the repetitions that calibrate a
     probability."""
-    result = first_hits(client, rho, delta, epsilon, exponent, samples, seed)
+    question = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
+    result = answer(client, "first-hit", samples=samples, seed=seed, **question)
     points = excess(divergences(result))
     return {
         "markov-test-excess": points,
@@ -66,7 +64,7 @@ def decay(points: Table) -> Table:
     the first octave, if that mean is above 3 standard errors."""
     largest = points["delta"].max()
     found = []
-    for (epsilon, exponent), series in oscillation.series_of(points):
+    for (epsilon, exponent), series in groups(points, "epsilon", "exponent"):
         # With the factor a delta at the border of two octaves stays in its octave despite rounding.
         octave = np.floor(np.log2(largest / series["delta"]) * (1 - 1e-9)).astype(int)
         count = np.bincount(octave)
@@ -96,7 +94,7 @@ def maxima(points: Table) -> Table:
     log(delta) or in 1/delta are constant if the oscillation is periodic in that variable. The
     equilibrium law, n = 1, is left out."""
     found: list[dict[str, Any]] = []
-    for (epsilon, exponent), series in oscillation.series_of(points):
+    for (epsilon, exponent), series in groups(points, "epsilon", "exponent"):
         falling = pick(series, np.argsort(-series["delta"], kind="stable"))
         x, y = np.log(falling["delta"]), falling["excess"]
         highest = () if exponent == 1 else _highest_points(y, falling["standard_error"])
@@ -141,13 +139,13 @@ def _top(x: Any, y: Any, i: int) -> float:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """One panel for each exponent."""
     data = tables["markov-test-excess"]
     exponents = distinct(data["exponent"])
     across = min(2, len(exponents))
     down = -(-len(exponents) // across)
-    shared: dict[str, Any] = {"sharex": True, "sharey": True, "squeeze": False}
+    shared: dict[str, Any] = style.SHARED | {"sharey": True}
     size = max(640, 540 * across), 420 * down + 40
     figure, panels = style.panels(size, down, across, **shared)
     style.signed_log_axis(panels[0, 0], 2 * data["standard_error"].min())

@@ -8,16 +8,15 @@ orbits, from the master equation, is above the panel.
 Time on two cores: quick 1 s, default 10 s, full 2 min.
 """
 
+import itertools
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, answer, first, in_mean_free_times
+from ballpiston.figures.parts.asking import RHO, Client, answer, in_mean_free_times
 from ballpiston.figures.parts.tables import Table, Tables, distinct, histograms, rows, stacked
-from ballpiston.parameter_lists import Numbers
+from ballpiston.parameter_lists import Numbers, number_list
 
 EFFORT = {"quick": {"samples": 20_000}, "full": {"samples": 10_000_000}}
 
@@ -47,7 +46,7 @@ def measure(
 
     # In units of the mean free time, the times and the law of the jump process are the same at
     # every delta.
-    jumps = law("markov", first("delta", delta))
+    jumps = law("markov", number_list("delta", delta)[0])
     return {"master-equation": stacked([law("billiard", delta), jumps])}
 
 
@@ -71,25 +70,15 @@ def beside_exact(bins: Table) -> Table:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Six times for each start energy."""
     data = tables["master-equation"]
     series = distinct(zip(data["model"], data["delta"]))
-    starts, times = distinct(data["epsilon"]), distinct(data["time"])
-    blocks = [
-        [(start, time) for time in times[k : k + _ACROSS]]
-        for start in starts
-        for k in range(0, len(times), _ACROSS)
-    ]
-    figure, panels = style.panels(
-        (360 * _ACROSS + 90, 350 * len(blocks) + 60),
-        2 * len(blocks),
-        _ACROSS,
-        sharex=True,
-        sharey="row",
-        squeeze=False,
-        height_ratios=(2, 1) * len(blocks),
-    )
+    cases = list(itertools.product(distinct(data["epsilon"]), distinct(data["time"])))
+    blocks = [cases[k : k + _ACROSS] for k in range(0, len(cases), _ACROSS)]
+    size = 360 * _ACROSS + 90, 350 * len(blocks) + 60
+    shared: dict[str, Any] = style.SHARED | {"height_ratios": (2, 1) * len(blocks)}
+    figure, panels = style.panels(size, 2 * len(blocks), _ACROSS, **shared)
     for k, block in enumerate(blocks):
         for upper, lower, (start, time) in zip(panels[2 * k], panels[2 * k + 1], block):
             law = rows(data, epsilon=start, time=time)

@@ -7,13 +7,10 @@ delta. Time on two cores: quick 1 s, default 2 s, full 3 min.
 
 from typing import Any
 
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, answer, first
+from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer, number_list
 from ballpiston.figures.parts.tables import Table, Tables, closed_forms, estimates, rows
-from ballpiston.parameter_lists import Numbers
 
 EFFORT = {
     "quick": {"samples": 1000, "collisions": 10_000},
@@ -45,7 +42,7 @@ def measure(
     )
     equilibrium = answer(client, "equilibrium", collisions=collisions, **question)
     bound = client.analytic(rho, 1e-9)["pair_delta_bound"][0]
-    phi = client.analytic(rho, first("delta", delta), "0:0.5:201")
+    phi = client.analytic(rho, number_list("delta", delta)[0], "0:0.5:201")
     rate = client.analytic(rho, f"0.00001:{bound}:300:log")
     return {
         "mean-free-time": estimates(conditional),
@@ -56,7 +53,7 @@ def measure(
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """The collapse, and the rates in an inset."""
     measured = rows(tables["mean-free-time"], name="mean_free_time_conditional")
     inset = rows(tables["mean-free-time-inset"], name="mean_free_time_ball_piston")

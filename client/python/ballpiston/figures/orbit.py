@@ -9,12 +9,10 @@ from typing import Any
 
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import cell_outline, style
-from ballpiston.figures.parts.asking import RHO
+from ballpiston.figures.parts.asking import RHO, Client
 from ballpiston.figures.parts.tables import Table, Tables, pick, rows, table
 
 _SHOWN_TIME = 25.0  # of the path and the positions; longer curves would be too dense
@@ -45,7 +43,7 @@ _FIELDS = ("x", "y", "energy")
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Path, energies and positions."""
     at = pick(tables["orbit-geometry"], 0)
     bodies = {"ball": tables["orbit-ball"], "piston": tables["orbit-piston"]}
@@ -58,7 +56,7 @@ def draw(tables: Tables) -> Figure:
     return figure
 
 
-def _draw_path(figure: Figure, axes: Any, ball: Table, at: dict[str, float]) -> None:
+def _draw_path(figure: style.Figure, axes: Any, ball: Table, at: dict[str, float]) -> None:
     tip, low = at["tip"], at["tip"] - at["delta"]
     outline = cell_outline.outline(at["rho"])
     axes.add_patch(Polygon(outline, fill=False, edgecolor=style.BLACK, linewidth=2, zorder=3))

@@ -15,13 +15,10 @@ statistical error. Time on two cores: quick 3 s, default 25 s, full 4 min.
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO
+from ballpiston.figures.parts.asking import RHO, Client, Numbers
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, stacked
-from ballpiston.parameter_lists import Numbers
 
 EFFORT = {
     "quick": {"events": 40_000},
@@ -133,7 +130,7 @@ def rate_of_windows(
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """The three panels."""
     data = tables["rates"]
     titles = ("all events", "ball-piston events", "ball-piston events, given ε")

@@ -9,13 +9,10 @@ Time on two cores: quick 3 s, default 1 min, full 10 min.
 
 from typing import Any
 
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import ENERGIES, RHO, divergences, first_hits
+from ballpiston.figures.parts.asking import ENERGIES, RHO, Client, Numbers, answer, divergences
 from ballpiston.figures.parts.tables import Tables, distinct, rows
-from ballpiston.parameter_lists import Numbers
 
 EFFORT: dict[str, dict[str, Any]] = {
     "quick": {"delta": "0.1:0.325:5:log", "samples": 30_000},
@@ -37,12 +34,13 @@ def measure(
 ) -> Tables:
     """Relative entropies from `samples` first hits each; --full has the paper's number. The noise
     floor falls as 1/samples."""
-    result = first_hits(client, rho, delta, epsilon, _EXPONENTS, samples, seed)
+    question = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": _EXPONENTS}
+    result = answer(client, "first-hit", samples=samples, seed=seed, **question)
     return {"relative-entropy": divergences(result)}
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """One panel for each exponent."""
     data = tables["relative-entropy"]
     count = len(distinct(data["epsilon"]))

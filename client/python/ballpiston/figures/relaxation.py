@@ -14,13 +14,10 @@ Time on two cores: quick 2 s, default 25 s, full 4 min.
 
 from typing import Any
 
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, answer, in_mean_free_times
+from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer, in_mean_free_times
 from ballpiston.figures.parts.tables import Table, Tables, curves, distinct, rows
-from ballpiston.parameter_lists import Numbers
 
 EFFORT = {"quick": {"samples": 20_000}, "full": {"samples": 2_000_000}}
 
@@ -52,7 +49,7 @@ def measure(
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """The four panels."""
     energy, correlation = tables["relaxation-energy"], tables["relaxation-autocorrelation"]
     deltas, starts = distinct(energy["delta"]), distinct(energy["epsilon"])

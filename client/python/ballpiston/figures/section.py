@@ -24,12 +24,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.collisions import Records
 from ballpiston.figures.parts import cell_outline, style
-from ballpiston.figures.parts.asking import RHO
+from ballpiston.figures.parts.asking import RHO, Client
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, pick, rows, stacked, table
 
 EFFORT = {
@@ -111,7 +109,7 @@ def density_of_heights(rho: float, delta: float, y: FloatArray) -> FloatArray:
 def stroke_on_the_right(rho: float, delta: float, s: FloatArray) -> FloatArray:
     """The length of the piston's stroke that is on the right of the place s of the cell's edge."""
     stroke = cell_outline.overlap_length(rho) + 2 * delta
-    x = cell_outline.point_of_outline(rho, s)[:, 0]
+    x = cell_outline.outline(rho, s)[:, 0]
     length: FloatArray = np.minimum(stroke, 0.5 + stroke / 2 - x)
     return length
 
@@ -150,7 +148,7 @@ _AXES = {
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Collisions and wall hits left, their exact density right."""
     titles = ("collisions", "exact density") * 2 + ("wall hits", "exact density")
     figure, panels = style.panels((960, 1180), 3, 2, titles, sharey="row", sharex="row")

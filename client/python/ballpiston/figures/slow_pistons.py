@@ -14,15 +14,12 @@ The program `slow_pistons` measures a. Time on one core: quick 20 s, default 3 m
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import fits, style
-from ballpiston.figures.parts.asking import RHO, answer
+from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer, number_list
 from ballpiston.figures.parts.charge import combined
 from ballpiston.figures.parts.programs import table_of
 from ballpiston.figures.parts.tables import Table, Tables, curves, pick, rows, stacked, table
-from ballpiston.parameter_lists import Numbers, number_list
 from ballpiston.point import Point
 from ballpiston.result import Result
 
@@ -110,7 +107,7 @@ def _growth(point: Point) -> dict[str, float]:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Both panels."""
     titles = ("Var(Q)/t over its first value", "growth over 2aJ²")
     figure, (left, right) = style.panels((960, 480), 1, 2, titles)

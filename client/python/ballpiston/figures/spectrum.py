@@ -9,13 +9,11 @@ billiard's tail comes from slow pistons. By default it takes half a minute of tw
 
 from typing import Any
 
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, answer, first, in_mean_free_times
+from ballpiston.figures.parts.asking import RHO, Client, answer, in_mean_free_times
 from ballpiston.figures.parts.tables import Table, Tables, closed_forms, curves, estimates
-from ballpiston.parameter_lists import Numbers
+from ballpiston.parameter_lists import Numbers, number_list
 
 EFFORT = {"quick": {"samples": 20_000}, "full": {"samples": 20_000_000}}
 
@@ -33,7 +31,7 @@ def measure(
 ) -> Tables:
     """The rates of the limit delta -> 0, the total rate f(epsilon), whose values are the continuum,
     and the billiard's autocorrelations from `samples` orbits each."""
-    one_delta = first("delta", delta)
+    one_delta = number_list("delta", delta)[0]
     spectrum = answer(client, "energy-relaxation", rho=rho, delta=one_delta, model="spectrum")
     question = {"rho": rho, "delta": delta, "samples": samples, "seed": seed}
     billiard = answer(client, "energy-relaxation", model="billiard", **question)
@@ -47,7 +45,7 @@ def measure(
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Both panels."""
     figure, (upper, lower) = style.panels((960, 900), 2, 1, height_ratios=(3, 4))
     _draw_rates(upper, tables["spectrum"], tables["spectrum-rate"])
@@ -56,11 +54,7 @@ def draw(tables: Tables) -> Figure:
 
 
 def _draw_rates(axes: Any, spectrum: Table, total: Table) -> None:
-    isolated = [
-        value
-        for name, value in zip(spectrum["name"], spectrum["value"])
-        if name == "spectral_gap" or name.startswith("isolated_rate")
-    ]
+    isolated = spectrum["value"][spectrum["name"] != "relaxation_time"]
     bottom, top = total["f"].min(), total["f"].max()
     axes.axvspan(bottom, top, color=style.REACH)
     axes.plot(total["f"], total["epsilon"], color=style.BLUE, linewidth=2)
@@ -84,7 +78,7 @@ def _draw_rates(axes: Any, spectrum: Table, total: Table) -> None:
 
 def _draw_correlations(axes: Any, billiard: Table) -> None:
     several = style.series(billiard, "delta", "δ")
-    line = several[0].part
+    line, *_ = several[0]
     axes.semilogy(line["t"], line["limit"], color=style.BLACK, label="limit δ → 0")
     for part, colour, label in several:
         style.error_points(axes, part["t"], part["value"], part["standard_error"], colour, label)

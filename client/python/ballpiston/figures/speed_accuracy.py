@@ -23,13 +23,12 @@ from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO
 from ballpiston.figures.parts.programs import table_of
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, pick, rows
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, groups, pick, rows
 
 EFFORT = {"quick": {"seconds": 0.03}, "full": {"seconds": 10.0}}
 
@@ -81,12 +80,12 @@ def curves_of(data: Table, quantity: str, fewest_samples: int = 1) -> list[style
     data = rows(data, quantity=quantity)
     data = pick(data, data["samples"] >= fewest_samples)
     found = []
-    for method, step in distinct(zip(data["method"], data["time_step"])):
+    for (method, step), runs in groups(data, "method", "time_step"):
         title, colour = _METHODS.get(method, ("", ""))
         if step > 0:
             title, colour = f"Δt = {style.power_text(step)}", _STEPS(0.25 - 0.18 * np.log10(step))
         if title:
-            found.append(style.Series(rows(data, method=method, time_step=step), colour, title))
+            found.append((runs, colour, title))
     return found
 
 
@@ -104,7 +103,7 @@ def expected_error(runs: Table, bias: float, error_of_bias: float) -> tuple[Floa
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """The panels that have data, and a line with the parameters."""
     data = tables["speed-accuracy"]
     has_gas = "heat-current" in data["quantity"]
@@ -133,7 +132,8 @@ def draw(tables: Tables) -> Figure:
     for axes in panels.flat:
         if not axes.has_data():
             axes.remove()
-    colours = {c.label: c.colour for q in distinct(data["quantity"]) for c in curves_of(data, q)}
+    quantities = distinct(data["quantity"])
+    colours = {title: of for q in quantities for _, of, title in curves_of(data, q)}
     handles = [style.point_handle(title, colours[title]) for title in sorted(colours)]
     style.top_legend(figure, handles, columns=6)
     figure.supxlabel(_parameters(data, has_gas), x=0.01, ha="left", fontsize=10)

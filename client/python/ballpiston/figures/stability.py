@@ -14,12 +14,11 @@ import re
 from typing import Any
 
 from matplotlib.colors import LinearSegmentedColormap, LogNorm
-from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.programs import output_of
-from ballpiston.figures.parts.tables import Table, Tables, distinct, rows, table
+from ballpiston.figures.parts.tables import Table, Tables, distinct, groups, rows, table
 from ballpiston.progress import has_terminal
 
 EFFORT: dict[str, dict[str, Any]] = {"quick": {}, "full": {"all_starts": True}}
@@ -94,7 +93,7 @@ def counts(report: str) -> Table:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """One cell for each situation and method."""
     data = tables["stability"]
     sections, cases = distinct(data["section"]), distinct(data["row"])
@@ -107,8 +106,7 @@ def draw(tables: Tables) -> Figure:
     for section in sections:
         axes.text(-0.6, line, section, ha="right", va="center", fontsize=11, fontweight="bold")
         line += 1
-        for number in distinct(rows(data, section=section)["row"]):
-            part = rows(data, row=number)
+        for _, part in groups(rows(data, section=section), "row"):
             ticks[line] = part["case"][0]
             _draw_cells(axes, part, line)
             line += 1

@@ -9,13 +9,10 @@ Time on two cores: quick 2 s, default 50 s, full 15 min.
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ballpiston.client import Client
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, answer, check_chains
+from ballpiston.figures.parts.asking import RHO, Client, Shapes, answer, check_chains
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, curves, distinct, pick, rows
-from ballpiston.parameter_lists import Shapes
 
 EFFORT: dict[str, dict[str, Any]] = {
     "quick": {"cells": "2,4,8", "samples": 4000, "billiard_samples": 500},
@@ -42,7 +39,7 @@ def measure(
     fifty times as much as the jump process."""
 
     def profile(model: str, samples: float) -> Table:
-        check_chains("cells", cells)
+        check_chains(cells)
         question = {"rho": rho, "delta": delta, "cells": cells, "hot": hot, "cold": cold}
         question |= {"model": model, "samples": samples, "seed": seed}
         return curves(answer(client, "gas-conduction", **question), "temperature_profile")
@@ -60,7 +57,7 @@ def linear_law(hot: float, cold: float, x: FloatArray) -> FloatArray:
 
 
 @style.styled
-def draw(tables: Tables) -> Figure:
+def draw(tables: Tables) -> style.Figure:
     """Points of the jump process are filled; balls are round, pistons square."""
     markov = tables["temperature-profile-markov"]
     hot, cold = float(markov["hot"][0]), float(markov["cold"][0])

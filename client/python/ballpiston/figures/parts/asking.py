@@ -1,17 +1,17 @@
-"""Questions of the figures to the server."""
+"""Questions of the figures to the server, and the types of their parameters."""
 
 import itertools
 import os
 import uuid
-from contextlib import closing
 from typing import Any
 
 import numpy as np
 
-from ballpiston.client import Client
-from ballpiston.figures.parts.tables import Table, table
-from ballpiston.job import Job
-from ballpiston.parameter_lists import Numbers, Shapes, number_list, shape_list
+from ballpiston.client import Client as Client
+from ballpiston.fields import column
+from ballpiston.figures.parts.tables import Table
+from ballpiston.parameter_lists import Numbers as Numbers, Shapes as Shapes
+from ballpiston.parameter_lists import number_list as number_list, shape_list
 from ballpiston.result import Result
 from ballpiston.specification import specification
 
@@ -22,48 +22,26 @@ _NAMESPACE = uuid.UUID("6c1f8b0e-4f0b-4c6e-9d43-0c7d1c1a7f11")
 
 
 def answer(client: Client, experiment: str, **question: Any) -> Result:
-    """The result of a question. If the same question was asked before, its job goes on."""
-    job = _job(client, specification(experiment, **question))
-    return job.watch(os.environ.get("BALLPISTON_PROGRESS") or "auto")
-
-
-def _job(client: Client, question: Any) -> Job:
-    """The ids are tried in order. If the job of an id failed or was cancelled, or its results have
-    expired, the next id makes a new job."""
-    key = f"{client.status().engine_version} {question.SerializeToString(deterministic=True)!r}"
+    """The result of a question. If the same question was asked before, its job goes on: the ids are
+    tried in order, and if the job of an id failed or was cancelled, or its results have expired,
+    the next id makes a new job."""
+    spec = specification(experiment, **question)
+    key = f"{client.status().engine_version} {spec.SerializeToString(deterministic=True)!r}"
     for attempt in itertools.count():
-        job = client.submit(question, request_id=str(uuid.uuid5(_NAMESPACE, f"{key} {attempt}")))
+        job = client.submit(spec, request_id=uuid.uuid5(_NAMESPACE, f"{key} {attempt}"))
         lost = ("failed", "cancelled", "cancelling")
         if job.state not in lost and not job.message.results_expired:
-            return job
-    raise AssertionError("unreachable")
-
-
-def first_hits(
-    client: Client,
-    rho: Numbers,
-    delta: Numbers,
-    epsilon: Numbers,
-    exponent: Numbers,
-    samples: float,
-    seed: int,
-) -> Result:
-    """First ball-piston hits of the billiard that starts from the outgoing law h^(exponent)."""
-    question = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
-    return answer(client, "first-hit", samples=samples, seed=seed, **question)
+            break
+    return job.watch(os.environ.get("BALLPISTON_PROGRESS") or "auto")
 
 
 def divergences(result: Result) -> Table:
     """The relative entropy of the ingoing law of first hits at each point, with its noise floor:
     its mean, and the standard deviation `noise_error`, if the two laws were equal."""
-    return table(
-        {name: point.parameters[name] for name in ("delta", "epsilon", "exponent")}
-        | {
-            field: getattr(point.message.kl_divergence, field)
-            for field in ("value", "standard_error", "noise_floor", "noise_error")
-        }
-        for point in result
-    )
+    found = {name: result.parameters[name] for name in ("delta", "epsilon", "exponent")}
+    for field in ("value", "standard_error", "noise_floor", "noise_error"):
+        found[field] = column((m.kl_divergence for m in result.messages), field)
+    return found
 
 
 def mean_free_times(client: Client, rho: Numbers, delta: Numbers) -> dict[float, float]:
@@ -78,19 +56,8 @@ def in_mean_free_times(client: Client, curves: Table) -> Table:
     return curves | {"t": curves["time"] / np.array([tau[delta] for delta in curves["delta"]])}
 
 
-def first(name: str, values: Numbers) -> float:
-    """Of a list: where the answer does not depend on the parameter, one value is enough."""
-    return number_list(name, values)[0]
-
-
-def check_chains(name: str, cells: Shapes) -> None:
+def check_chains(cells: Shapes) -> None:
     """Raises ValueError if one of the shapes is a lattice."""
-    for shape in shape_list(name, cells):
+    for shape in shape_list("cells", cells):
         if "x" in shape:
-            raise ValueError(f"{name}: {shape} is a lattice; permitted: lengths of chains")
-
-
-def start_of(client: Client, **orbit: Any) -> dict[str, Any]:
-    """The start of an orbit: the geometry and all bodies."""
-    with closing(client.trace(events=1, **orbit)) as events:  # type: ignore[type-var]
-        return next(events)
+            raise ValueError(f"cells: {shape} is a lattice; permitted: lengths of chains")

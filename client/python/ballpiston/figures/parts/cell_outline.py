@@ -7,6 +7,7 @@ import numpy as np
 from ballpiston.figures.parts.tables import FloatArray
 
 CENTRES = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
+_WHOLE = np.linspace(0, 4, 193)
 
 
 def overlap_length(rho: float) -> float:
@@ -14,23 +15,12 @@ def overlap_length(rho: float) -> float:
     return float(np.sqrt(4 * rho**2 - 1))
 
 
-def arc(rho: float, disc: int, count: int = 49) -> FloatArray:
-    """Points (count, 2) of the arc of a disc, from tip to tip. The four arcs of discs 0 to 3 go
-    around the cell, counterclockwise from its left tip."""
-    return point_of_outline(rho, disc + np.linspace(0, 1, count))
-
-
-def circle(rho: float, disc: int, angles: FloatArray) -> FloatArray:
-    """Points (angles, 2) of a disc's edge."""
-    x, y = CENTRES[disc]
-    return np.column_stack([x + rho * np.cos(angles), y + rho * np.sin(angles)])
-
-
-def point_of_outline(rho: float, s: FloatArray) -> FloatArray:
-    """Points (n, 2) of the whole cell. s counts arcs from the left tip, counterclockwise: 0 to 4."""
+def outline(rho: float, s: FloatArray = _WHOLE) -> FloatArray:
+    """Points (n, 2) of the cell's edge, by default all around. s counts the arcs of discs 0 to 3,
+    counterclockwise from the left tip: 0 to 4."""
     disc = np.minimum(np.floor(s), 3)
     x, y = np.array(CENTRES)[disc.astype(int)].T
-    angles = _first_angle(rho) - (s - disc) * _angle_of_arc(rho) + disc * np.pi / 2
+    angles = np.pi / 4 + (0.5 - s + disc) * _angle_of_arc(rho) + disc * np.pi / 2
     return np.column_stack([x + rho * np.cos(angles), y + rho * np.sin(angles)])
 
 
@@ -41,29 +31,21 @@ def place_on_outline(
     disc = np.where(x < 0, np.where(y < 0, 0, 3), np.where(y < 0, 1, 2))
     centre_x, centre_y = np.array(CENTRES)[disc].T
     angles = np.arctan2(y - centre_y, x - centre_x) - disc * np.pi / 2
-    share = (_first_angle(rho) - np.mod(angles, 2 * np.pi)) / _angle_of_arc(rho)
+    share = 0.5 - (np.mod(angles, 2 * np.pi) - np.pi / 4) / _angle_of_arc(rho)
     return disc + share, (x - centre_x) / rho, (y - centre_y) / rho
 
 
-def _first_angle(rho: float) -> float:
-    """Of disc 0 at the left tip."""
-    return float(np.pi / 2 - np.arctan(overlap_length(rho)))
-
-
 def _angle_of_arc(rho: float) -> float:
-    return float(2 * _first_angle(rho) - np.pi / 2)
-
-
-def outline(rho: float) -> FloatArray:
-    """Points (n, 2) of the whole cell, counterclockwise from its left tip."""
-    return np.concatenate([arc(rho, disc) for disc in range(4)])
+    return float(np.pi / 2 - 2 * np.arctan(overlap_length(rho)))
 
 
 def overlap(rho: float) -> FloatArray:
     """Points (n, 2) of the lens in which the discs 1 and 2 overlap, at the right of the cell."""
     theta = np.arctan(overlap_length(rho))
     angles = np.linspace(theta, -theta, 49)
-    return np.concatenate([circle(rho, 1, np.pi / 2 + angles), circle(rho, 2, -np.pi / 2 + angles)])
+    arc = np.column_stack([-rho * np.sin(angles), rho * np.cos(angles) - 0.5])
+    lens: FloatArray = np.concatenate([arc, -arc]) + (0.5, 0)
+    return lens
 
 
 def half_height(rho: float, depth: FloatArray) -> FloatArray:

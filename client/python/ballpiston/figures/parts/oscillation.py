@@ -11,13 +11,12 @@ error `model_error`, which makes chi^2 of the best oscillating model equal to it
 freedom. All models have the same errors, so that their chi^2 can be compared.
 """
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from ballpiston.figures.parts.fits import linear
-from ballpiston.figures.parts.tables import FloatArray, Table, distinct, pick, rows, table
+from ballpiston.figures.parts.tables import FloatArray, Table, groups, pick, table
 
 # x = delta^-power; 0 is the logarithm.
 _MODELS = {"delta": -1.0, "log(delta)": 0.0, "1/delta": 1.0}
@@ -30,12 +29,6 @@ _COLUMNS = (
     *("b", "b_error", "amplitude", "period", "chi_squared", "degrees_of_freedom", "gain"),
     *("false_alarm", "p_value", "transform", "transform_low", "transform_high"),
 )
-
-
-def series_of(points: Table) -> Iterator[tuple[tuple[float, float], Table]]:
-    """The points of each (epsilon, exponent)."""
-    for epsilon, exponent in distinct(zip(points["epsilon"], points["exponent"])):
-        yield (epsilon, exponent), rows(points, epsilon=epsilon, exponent=exponent)
 
 
 def fits(points: Table, synthetic: int) -> Table:
@@ -54,9 +47,9 @@ def fits(points: Table, synthetic: int) -> Table:
     found: list[dict[str, Any]] = []
     sums: list[dict[str, Any]] = []
     random = np.random.default_rng(_SEED)
-    for epsilon in distinct(points["epsilon"]):
+    for (epsilon,), part in groups(points, "epsilon"):
         of_energy, of_powers = [], []
-        for (_, exponent), series in series_of(rows(points, epsilon=epsilon)):
+        for (exponent,), series in groups(part, "exponent"):
             above = series["excess"] > 3 * series["standard_error"]
             if exponent == 1 or above.sum() < _FEWEST_POINTS:
                 continue
@@ -85,9 +78,8 @@ def _fits_of_series(
     head = {"points": len(x), "smallest_delta": series["delta"].min(), "model_error": model_error}
     power_law = next(iter(scans.values()))[0][:1, :, :2]
     plain = linear(power_law[0], y, error)
-    law = {"model": "power law", "b": plain.coefficients[1], "b_error": plain.errors[1]}
-    law |= {"chi_squared": plain.chi_squared, "degrees_of_freedom": plain.freedom}
-    found = [head | law]
+    law = {"model": "power law", "degrees_of_freedom": plain.freedom}
+    found = [head | law | plain.row("A", "b")]
     noise = random.standard_normal((synthetic, len(x)))  # a fit removes the power law
     chi_of_noise, best_of_noise = _chi_squared(power_law, error, noise)[:, 0], best_of(noise)
     chi = best_of(y / error)
@@ -99,7 +91,7 @@ def _fits_of_series(
         model = terms[best] @ fit.coefficients / error
         again = best_of(model + random.standard_normal((synthetic, len(x))))
         worse = again[name] - np.min(list(again.values()), axis=0)
-        row = {"model": name, "b": fit.coefficients[1], "b_error": fit.errors[1]}
+        row = {"model": name} | fit.row("A", "b")
         row |= {"amplitude": np.hypot(*fit.coefficients[2:]), "period": 2 * np.pi / omegas[best]}
         row |= {"chi_squared": chi[name], "gain": plain.chi_squared - chi[name]}
         row |= {"degrees_of_freedom": fit.freedom - 1}  # omega

@@ -13,7 +13,7 @@ import numpy as np
 
 from ballpiston.errors import Error, InvalidArgument
 from ballpiston.figures.parts.tables import Table
-from ballpiston.private_server import find_private_server
+from ballpiston.private_server import find_program
 
 
 class ProgramFailed(Error):
@@ -30,7 +30,10 @@ def output_of(program: str, *arguments: str, quiet: bool = False) -> str:
     Raises:
         ProgramFailed: it cannot be started or fails. InvalidUse if it rejects its arguments.
     """
-    path = shutil.which(program, path=os.pathsep.join([*_folders(), os.environ.get("PATH", "")]))
+    beside = Path(find_program()).resolve().parent
+    hidden = beside.parent / "libexec" / "ballpiston"  # programs that only figures use
+    folders = [str(beside), str(hidden), os.environ.get("PATH", "")]
+    path = shutil.which(program, path=os.pathsep.join(folders))
     if path is None:
         raise ProgramFailed(f"{program}: not found beside the program ballpiston, nor in PATH")
     messages = subprocess.PIPE if quiet else None
@@ -61,9 +64,3 @@ def _column(cells: Iterable[str]) -> Any:
         return np.array([float(cell or "nan") for cell in cells])
     except ValueError:
         return np.array(cells)
-
-
-def _folders() -> list[str]:
-    """Of the program ballpiston, and beside it that of the programs that only figures use."""
-    folder = Path(find_private_server().program).resolve().parent
-    return [str(folder), str(folder.parent / "libexec" / "ballpiston")]

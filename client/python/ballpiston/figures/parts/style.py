@@ -5,15 +5,15 @@ import io
 import string
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import matplotlib
 import matplotlib.style
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import LinearSegmentedColormap, Normalize
-from matplotlib.figure import Figure
+from matplotlib.colors import LinearSegmentedColormap, Normalize, to_hex
+from matplotlib.figure import Figure as Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
@@ -27,6 +27,9 @@ DISC, REACH, OVERLAP = "#dcdcdc", "#e3ecfb", "#c8c8c8"  # of the cell
 ENERGY = LinearSegmentedColormap.from_list(
     "energy", ["#2b3a9e", "#6a5acd", "#c4243a", "#f28a1c", "#f5d000"]
 )
+
+# Options of `panels`: the panels of a row have one vertical axis, all have one horizontal axis.
+SHARED: dict[str, Any] = {"sharex": True, "sharey": "row", "squeeze": False}
 
 _PIXELS = 100.0  # of an inch; sizes of pictures are in pixels
 _SHEET = Path(__file__).with_name("ballpiston.mplstyle")
@@ -56,22 +59,16 @@ def save(figure: Figure, path: Path) -> None:
 
 def colour(index: int) -> str:
     """Of the line of this number."""
-    cycle: list[str] = matplotlib.rcParams["axes.prop_cycle"].by_key()["color"]
-    return "#" + cycle[index % len(cycle)].lstrip("#")
+    return str(to_hex(f"C{index}"))
 
 
-class Series(NamedTuple):
-    """The rows of a table that belong to one value, with the value's colour and label."""
-
-    part: Table
-    colour: str
-    label: str
+Series = tuple[Table, str, str]  # the rows of one value, with the value's colour and label
 
 
 def series(whole: Table, name: str, symbol: str) -> list[Series]:
     """One for each value of the column `name`, in the order of their first appearance."""
     return [
-        Series(rows(whole, **{name: x}), colour(k), f"{symbol} = {x:g}")
+        (rows(whole, **{name: x}), colour(k), f"{symbol} = {x:g}")
         for k, x in enumerate(distinct(whole[name]))
     ]
 

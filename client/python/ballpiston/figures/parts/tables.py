@@ -1,6 +1,6 @@
 """Tables: named columns of equal length. A figure's data are tables by name of file."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -47,6 +47,12 @@ def rows(whole: Table, **wanted: Any) -> Table:
 def distinct(column: Iterable[Any]) -> list[Any]:
     """The values, in the order of their first appearance."""
     return list(dict.fromkeys(column))
+
+
+def groups(whole: Table, *names: str) -> Iterator[tuple[tuple[Any, ...], Table]]:
+    """Each combination of values of these columns, and its rows."""
+    for values in distinct(zip(*(whole[name] for name in names))):
+        yield values, rows(whole, **dict(zip(names, values)))
 
 
 def estimates(result: Result) -> Table:
@@ -97,13 +103,8 @@ def histograms(result: Result) -> Table:
 
 def closed_forms(forms: ClosedForms, *names: str) -> Table:
     """One row for each pair or, if a name has a value for each energy, for each pair and energy."""
-    columns = [forms[name] for name in names]
-    shape = np.broadcast_shapes(*(_as_matrix(column).shape for column in columns))
-    return {n: np.broadcast_to(_as_matrix(c), shape).ravel() for n, c in zip(names, columns)}
-
-
-def _as_matrix(column: FloatArray) -> FloatArray:
-    return column[:, np.newaxis] if column.ndim == 1 else column
+    matrices = [forms[name].reshape(len(forms), -1) for name in names]
+    return dict(zip(names, map(np.ravel, np.broadcast_arrays(*matrices))))
 
 
 def _facts(point: Point) -> dict[str, Any]:

@@ -162,17 +162,14 @@ def _next_hit(
     rho: float, x: FloatArray, y: FloatArray, ux: FloatArray, uy: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The length of the flight to the next disc, and the disc's normal there."""
-    length, cx, cy = np.full_like(x, np.inf), np.zeros_like(x), np.zeros_like(x)
-    for corner_x, corner_y in CENTRES:
-        dx, dy = x - corner_x, y - corner_y
-        along = dx * ux + dy * uy
-        square = along**2 - (dx**2 + dy**2 - rho**2)
-        hits = (along < 0) & (square > 0)
-        # Rounding may put the ball into the disc.
-        found = np.where(hits, np.maximum(-along - np.sqrt(np.where(hits, square, 0)), 0), np.inf)
-        nearer = found < length
-        length = np.where(nearer, found, length)
-        cx, cy = np.where(nearer, corner_x, cx), np.where(nearer, corner_y, cy)
+    centres = np.array(CENTRES)
+    dx, dy = x - centres[:, :1], y - centres[:, 1:]
+    along = dx * ux + dy * uy
+    square = along**2 - (dx**2 + dy**2 - rho**2)
+    hits = (along < 0) & (square > 0)
+    # Rounding may put the ball into the disc.
+    found = np.where(hits, np.maximum(-along - np.sqrt(np.where(hits, square, 0)), 0), np.inf)
+    length, (cx, cy) = found.min(axis=0), centres[found.argmin(axis=0)].T
     return length, (x + length * ux - cx) / rho, (y + length * uy - cy) / rho
 
 
