@@ -9,7 +9,7 @@
 namespace ballpiston::client {
 
 FakeServer::~FakeServer() {
-  ensemble.Release();
+  released_.count_down();
   if (server_) server_->Shutdown();
 }
 
@@ -18,14 +18,43 @@ void FakeServer::Start() {
   grpc::ServerBuilder builder;
   builder.AddListeningPort(Address(), grpc::InsecureServerCredentials());
   builder.SetMaxReceiveMessageSize(largest_request);
-  builder.RegisterService(&ensemble);
-  builder.RegisterService(&analytic);
-  builder.RegisterService(&trace);
-  builder.RegisterService(&server);
+  builder.RegisterService(static_cast<v1::EnsembleService::Service*>(this));
+  builder.RegisterService(static_cast<v1::AnalyticService::Service*>(this));
+  builder.RegisterService(static_cast<v1::TraceService::Service*>(this));
+  builder.RegisterService(static_cast<v1::ServerService::Service*>(this));
   server_ = builder.BuildAndStart();
 }
 
 std::shared_ptr<grpc::Channel> FakeServer::Channel() const { return *OpenChannel(Address()); }
+
+const google::protobuf::Message* FakeServer::LastAsked(const std::string& call) const {
+  const std::lock_guard lock(mutex_);
+  const auto last = std::find_if(asked_.rbegin(), asked_.rend(), [&](const auto& request) {
+    return request->GetDescriptor()->name() == call + "Request";
+  });
+  return last == asked_.rend() ? nullptr : last->get();
+}
+
+std::unique_lock<std::mutex> FakeServer::Record(const google::protobuf::Message& request) {
+  std::unique_lock lock(mutex_);
+  asked_.emplace_back(request.New())->CopyFrom(request);
+  return lock;
+}
+
+grpc::Status FakeServer::Find(const std::string& name, v1::EnsembleJob* job) const {
+  for (const v1::EnsembleJob& each : jobs) {
+    if (each.name() == name) *job = each;
+  }
+  if (job->name() == name) return grpc::Status::OK;
+  return WithReason(grpc::StatusCode::NOT_FOUND, "no such job: " + name, "JOB_NOT_FOUND");
+}
+
+grpc::Status FakeServer::FindWithResults(const std::string& name, v1::EnsembleJob* job) const {
+  const grpc::Status found = Find(name, job);
+  if (!found.ok() || !job->results_expired()) return found;
+  return WithReason(grpc::StatusCode::FAILED_PRECONDITION, name + ": its results have expired",
+                    "RESULTS_EXPIRED");
+}
 
 grpc::Status WithReason(grpc::StatusCode code, const std::string& message,
                         const std::string& reason) {
@@ -35,10 +64,6 @@ grpc::Status WithReason(grpc::StatusCode code, const std::string& message,
   google::rpc::Status details;
   details.add_details()->PackFrom(info);
   return grpc::Status(code, message, details.SerializeAsString());
-}
-
-grpc::Status JobNotFound(const std::string& name) {
-  return WithReason(grpc::StatusCode::NOT_FOUND, "no such job: " + name, "JOB_NOT_FOUND");
 }
 
 v1::WatchEnsembleJobResponse JobMessage(const v1::EnsembleJob& job, const std::string& token) {

@@ -2,7 +2,6 @@
 // server. A test includes this file after the header that it tests.
 #pragma once
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
 #include "client/library/client.h"
@@ -15,6 +14,7 @@
 
 namespace ballpiston::client {
 
+using testing::AnyOf;
 using testing::Ge;
 using testing::Le;
 using testing::MatchesRegex;

@@ -74,9 +74,9 @@ class ProgramTest : public ::testing::Test {
     v1::EnsembleJob job = JobIn(v1::EnsembleJob::SUCCEEDED);
     job.mutable_progress()->set_points(1);
     job.mutable_progress()->set_points_done(1);
-    server_.ensemble.jobs = {job};
-    server_.ensemble.watches = {{{JobMessage(job, "t")}, grpc::Status::OK}};
-    v1::Estimate* estimate = server_.ensemble.points.emplace_back().add_estimates();
+    server_.jobs = {job};
+    server_.watches = {{{JobMessage(job, "t")}, grpc::Status::OK}};
+    v1::Estimate* estimate = server_.points.emplace_back().add_estimates();
     estimate->set_name("mean_hit_time");
     estimate->set_value(1.5);
   }
@@ -87,7 +87,7 @@ class ProgramTest : public ::testing::Test {
     words.insert(words.end(), {"--server", server_.Address()});
     return Ballpiston(words);
   }
-  v1::EnsembleJob& job() { return server_.ensemble.jobs[0]; }
+  v1::EnsembleJob& job() { return server_.jobs[0]; }
 
   const EmptyHome home_;
   FakeServer server_;

@@ -110,58 +110,41 @@ class Replay : public ProgramTest {
   }
 
   std::string LastRequest(const std::string& call) {
-    const FakeEnsembleService::Requests asked = server_.ensemble.Asked();
-    if (call == "create") return Last(asked.create);
-    if (call == "list") return Last(asked.list);
-    if (call == "plan") return Last(asked.plan);
-    if (call == "result") return Last(asked.result);
-    if (call == "results") return Last(asked.results);
-    if (call == "update") return Last(asked.update);
-    if (call == "analytic") return TextOf(server_.analytic.asked);
-    if (call == "trace") return TextOf(server_.trace.asked);
-    return "no such call: " + call + "\n";
-  }
-
-  template <typename Request>
-  static std::string Last(const std::vector<Request>& requests) {
-    return requests.empty() ? "none\n" : TextOf(requests.back());
-  }
-
-  static std::string TextOf(const google::protobuf::Message& message) {
-    google::protobuf::TextFormat::Printer printer;
-    printer.SetSingleLineMode(true);
-    std::string text;
-    printer.PrintToString(message, &text);
-    return absl::StrCat(absl::StripTrailingAsciiWhitespace(text), "\n");
+    const google::protobuf::Message* const request = server_.LastAsked(call);
+    return absl::StrCat(request == nullptr ? "none" : request->ShortDebugString(), "\n");
   }
 
   // Prepares an answer of the server, in the text format of its message, or writes a file.
   void Give(const std::string& name, const std::string& text) {
-    FakeEnsembleService& ensemble = server_.ensemble;
     if (absl::string_view file = name; absl::ConsumePrefix(&file, "file ")) {
       const fs::path path = fs::absolute(std::string(file));
       fs::create_directories(path.parent_path());
       WriteFile(path, text);
     } else if (name == "jobs") {
       const auto page = FromText<v1::ListEnsembleJobsResponse>(text);
-      ensemble.jobs.assign(page.jobs().begin(), page.jobs().end());
-      if (!ensemble.jobs.empty()) ensemble.watches[0].messages = {JobMessage(job(), "t")};
+      server_.jobs.assign(page.jobs().begin(), page.jobs().end());
+      if (!server_.jobs.empty()) server_.watches[0].messages = {JobMessage(job(), "t")};
     } else if (name == "results") {
       const auto page = FromText<v1::ListResultsResponse>(text);
-      ensemble.points.assign(page.results().begin(), page.results().end());
+      server_.points.assign(page.results().begin(), page.results().end());
     } else if (name == "plan") {
-      ensemble.plan = FromText<v1::PlanEnsembleJobResponse>(text);
+      server_.plan = FromText<v1::PlanEnsembleJobResponse>(text);
     } else if (name == "closed forms") {
-      server_.analytic.response = FromText<v1::EvaluatePairsResponse>(text);
+      server_.closed_forms = FromText<v1::EvaluatePairsResponse>(text);
     } else if (name == "status") {
-      server_.server.status = FromText<v1::ServerStatus>(text);
+      server_.status = FromText<v1::ServerStatus>(text);
     } else if (name == "orbit") {
-      server_.trace.messages = {FromText<v1::TraceOrbitResponse>(text)};
+      server_.orbit = {FromText<v1::TraceOrbitResponse>(text)};
     } else if (name == "error") {  // of all calls that submit, plan or trace
       const auto error = FromText<google::rpc::Status>(text);
-      ensemble.create_end = ensemble.plan_end = server_.trace.end =
+      server_.create_end = server_.plan_end = server_.trace_end =
           grpc::Status(static_cast<grpc::StatusCode>(error.code()), error.message(),
                        error.details().empty() ? "" : error.SerializeAsString());
+    } else if (name == "violations") {
+      constexpr char kType[] = "details { [type.googleapis.com/google.rpc.";
+      Give("error", absl::StrCat("code: 3 message: 'the specification is not valid' ", kType,
+                                 "ErrorInfo] { reason: 'INVALID_SPEC' } } ", kType,
+                                 "BadRequest] { ", text, " } }"));
     } else {
       ADD_FAILURE() << "nothing can be given as: " << name;
     }

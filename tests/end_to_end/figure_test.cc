@@ -21,12 +21,8 @@ TEST_F(FigureTest, LeavesDataAndPictures) {
   const ProcessResult result = server_.Client(Draw("--samples 200 --collisions 2000"));
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_THAT(result.err, kQuiet);
-  const std::vector<std::string> parts =
-      absl::StrSplit(Contents(File("mean-free-time.csv")), ",mean_free_time_conditional,");
-  EXPECT_EQ(parts.size(), 1 + 2 * 59u);
-  const std::string svg = Contents(File("mean-free-time.svg"));
-  EXPECT_THAT(svg, HasSubstr("</svg>"));
-  EXPECT_THAT(svg, HasSubstr("δ = 0.1"));
+  EXPECT_THAT(Contents(File("mean-free-time.csv")), HasSubstr(",mean_free_time_conditional,"));
+  EXPECT_THAT(Contents(File("mean-free-time.svg")), HasSubstr("δ = 0.1"));
   for (const char* name : {"mean-free-time.csv", "mean-free-time-inset.csv", "mean-free-time.png",
                            "mean-free-time.svg"}) {
     EXPECT_THAT(result.out, HasSubstr(File(name) + "\n"));
@@ -59,23 +55,21 @@ TEST_F(FigureTest, APictureThatCannotBeWrittenIsAnError) {
 // The jobs take years.
 TEST_F(FigureTest, AnInterruptionCancelsNothingAndTheSameCommandGoesOn) {
   const Words command = Draw("--samples 1000000000000 --progress json");
-  const auto job_count = [this] { return Length(At(server_.Json({"list"}), "jobs")); };
   for (int attempt = 0; attempt < 2; ++attempt) {
     const auto figure = server_.StartClient(command);
     ASSERT_TRUE(figure->WaitForErr("RUNNING"));
     figure->Signal(SIGTERM);
     EXPECT_THAT(figure->Wait(), ExitsWith(130));
-    EXPECT_EQ(job_count(), 1);
-    EXPECT_EQ(At(server_.Json({"list"}), "jobs", 0, "state").string_value(), "RUNNING");
+    ASSERT_EQ(server_.List().jobs_size(), 1);
+    EXPECT_EQ(server_.List().jobs(0).state(), v1::EnsembleJob::RUNNING);
   }
   // A job that was cancelled is made again.
-  const std::string job = At(server_.Json({"list"}), "jobs", 0, "name").string_value();
-  EXPECT_THAT(server_.Client({"cancel", job}), ExitsWith(0));
+  EXPECT_THAT(server_.Client({"cancel", server_.List().jobs(0).name()}), ExitsWith(0));
   const auto figure = server_.StartClient(command);
   ASSERT_TRUE(figure->WaitForErr("RUNNING"));
   figure->Signal(SIGINT);
   EXPECT_THAT(figure->Wait(), ExitsWith(130));
-  EXPECT_EQ(job_count(), 2);
+  EXPECT_EQ(server_.List().jobs_size(), 2);
 }
 
 }  // namespace

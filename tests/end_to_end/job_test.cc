@@ -1,8 +1,6 @@
 // Jobs by the command line: submit, watch, result, list, and files of questions and results. Two
 // tests end the output early: the reader of a pipe leaves, and the disk is full. Below: jobs whose
 // results expire, and jobs whose model the service chooses.
-#include <google/protobuf/util/json_util.h>
-
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
@@ -20,7 +18,6 @@ class JobTest : public ::testing::Test {
     options.environment["client"] = ClientProgram();
     return RunProgram(options);
   }
-  double Streams() const { return At(server_.Json({"status"}), "streams").number_value(); }
 
   const TestServer server_;
 };
@@ -41,28 +38,17 @@ TEST_F(JobTest, SubmitPrintsTheNameThatWatchAndResultTake) {
   EXPECT_THAT(list.out, HasSubstr(name + ",first-hit,succeeded,2,2,4000,"));
 }
 
-TEST_F(JobTest, ASpecificationMayComeFromStandardInput) {
-  const std::string spec = R"({"experiment": "EQUILIBRIUM", "grid": {"rho": [0.53],
-                              "delta": [0.2]}, "target": {"collisions": 1000}, "seed": 5})";
-  const ProcessResult input = server_.Client({"run", "--spec", "-", "--format", "json"}, spec);
-  EXPECT_THAT(input, ExitsWith(0));
-  const ProcessResult flags =
-      server_.Client(Split("run equilibrium --rho 0.53 --delta 0.2 --collisions 1000 --seed 5 "
-                           "--fresh --format json"));
-  EXPECT_EQ(PointsOf(input.out), PointsOf(flags.out));
-}
-
 // The commands with which docs/answers.md verifies a file.
 TEST_F(JobTest, TheQuestionOfASavedFileGivesTheSamePointsOnAnotherServer) {
   server_.Client(Joined({{"run"}, kQuickQuestion, {"--save", File("a.json")}}));
   std::string spec;
   google::protobuf::util::MessageToJsonString(
-      At(ParseJson(Contents(File("a.json"))), "job", "spec"), &spec);
+      FromJson<file::v1::SavedResult>(Contents(File("a.json"))).job().spec(), &spec);
   WriteFile(File("spec.json"), spec);
   const TestServer other;
-  ASSERT_THAT(
-      other.Client({"run", "--fresh", "--spec", File("spec.json"), "--save", File("b.json")}),
-      ExitsWith(0));
+  ASSERT_THAT(Bash(absl::StrCat("<", File("spec.json"), " BALLPISTON_SERVER=", other.address(),
+                                " $client run --fresh --spec - --save ", File("b.json"))),
+              ExitsWith(0));
   EXPECT_EQ(PointsOf(Contents(File("b.json"))), PointsOf(Contents(File("a.json"))));
 }
 
@@ -73,7 +59,7 @@ TEST_F(JobTest, ArraysNeedThePythonPackage) {
   const ProcessResult refused = RunProgram(run);
   EXPECT_THAT(refused, ExitsWith(2));
   EXPECT_THAT(refused.err, HasSubstr("install python3-ballpiston and python3-numpy"));
-  EXPECT_EQ(Length(At(server_.Json({"list"}), "jobs")), 0);
+  EXPECT_EQ(server_.List().jobs_size(), 0);
   EXPECT_FALSE(fs::exists(File("a.npz")));
 }
 
@@ -88,7 +74,7 @@ TEST_F(JobTest, AClosedPipeExitsWithZero) {
     EXPECT_EQ(piped.err, "exit 0\n");
     EXPECT_EQ(std::count(piped.out.begin(), piped.out.end(), '\n'), 1);
   }
-  AwaitThat([this] { return Streams() == 0; });
+  AwaitThat([this] { return server_.Status().streams() == 0; });
 }
 
 TEST_F(JobTest, AFullDiskOrClosedOutputIsAnError) {
@@ -133,10 +119,10 @@ TEST_F(JobTest, AnInterruptionEndsATraceInTheServerToo) {
     ProcessOptions options = server_.Command(Split("trace --rho 0.53 --delta 0.2 --events 1e6"));
     options.command.insert(options.command.begin(), {"sh", "-c", "exec \"$@\" >/dev/null", "sh"});
     Process trace(options);
-    AwaitThat([this] { return Streams() == 1; });
+    AwaitThat([this] { return server_.Status().streams() == 1; });
     trace.Signal(signal);
     EXPECT_THAT(trace.Wait(), ExitsWith(130));
-    AwaitThat([this] { return Streams() == 0; });
+    AwaitThat([this] { return server_.Status().streams() == 0; });
   }
 }
 
@@ -144,52 +130,33 @@ TEST_F(JobTest, AnInterruptionEndsATraceInTheServerToo) {
 //
 // tests/server/book/stored_limits_test.cc tests which results stay.
 
-ProcessResult RunJson(const TestServer& server, const Words& question) {
-  ProcessResult run = server.Client(Joined({{"run", "--format", "json"}, question}));
-  EXPECT_THAT(run, ExitsWith(0));
-  return run;
-}
-
-// 40 points whose results take 200 kB.
-ProcessResult RunSweep(const TestServer& server, int seed) {
-  const std::string sweep =
-      "--resume first-hit --rho 0.53 --delta 0.1:0.2:40 --epsilon 0.1 --exponent 1 --samples 500";
-  return RunJson(server, Split(absl::StrCat(sweep, " --seed ", seed)));
-}
-
-TEST(Expiry, OldResultsExpireAndCanBeComputedAgain) {
+TEST(Expiry, TheSameCommandComputesExpiredResultsAgain) {
   const TestServer server({.flags = {"--max-store-bytes=1000000"}});
-  const ProcessResult old = RunSweep(server, 0);
-  const std::string name = At(ParseJson(old.out), "job", "name").string_value();
-  int seed = 1;
-  AwaitThat([&] {
-    const ProcessResult result = server.Client({"result", name});
-    const bool has_expired = result.err.find("expired") != std::string::npos;
-    if (!has_expired) RunSweep(server, seed++);
-    return has_expired || testing::Test::HasFailure();
-  });
-  // The same command computes expired results again, as does the question of the job.
-  for (const ProcessResult& again : {RunJson(server, {"--again", name}), RunSweep(server, 0)}) {
-    EXPECT_NE(At(ParseJson(again.out), "job", "name").string_value(), name);
-    EXPECT_EQ(PointsOf(again.out), PointsOf(old.out));
-  }
+  const auto run = [&](int seed) {  // 40 points whose results take 200 kB
+    const ProcessResult result = server.Client(Split(absl::StrCat(
+        "run first-hit --rho 0.53 --delta 0.1:0.2:40 --epsilon 0.1 --exponent 1 --samples 500 "
+        "--resume --format json --seed ",
+        seed)));
+    EXPECT_THAT(result, ExitsWith(0));
+    return result.out;
+  };
+  const std::string old = run(0);
+  const std::string name = FromJson<file::v1::SavedResult>(old).job().name();
+  for (int seed = 1; seed < 100 && server.Client({"result", name}).exit_code == 0; ++seed)
+    run(seed);
+  EXPECT_THAT(server.Client({"result", name}).err, HasSubstr("expired"));
+  const std::string again = run(0);
+  EXPECT_NE(FromJson<file::v1::SavedResult>(again).job().name(), name);
+  EXPECT_EQ(PointsOf(again), PointsOf(old));
 }
 
 // ---- the choice of the model is left to the service ----
 //
 // tests/core/model_choice/ladder_test.cc tests the choice itself.
 
-// A field of the first point that is a text.
-std::string TextOf(const google::protobuf::Struct& document, const char* field) {
-  return At(document, "points", 0, field).string_value();
-}
-
-double NumberOf(const google::protobuf::Struct& document, const char* estimate, const char* field) {
-  for (const auto& each : At(document, "points", 0, "estimates").list_value().values()) {
-    if (At(each, "name").string_value() == estimate) return At(each, field).number_value();
-  }
-  ADD_FAILURE() << "no estimate " << estimate;
-  return NAN;
+// The first point of an answer.
+v1::PointResult PointOf(const TestServer& server, const std::string& question) {
+  return server.Json<file::v1::SavedResult>(Split("run " + question)).points(0);
 }
 
 // The result holds the number of samples that the budget permitted. A job with this number of
@@ -197,27 +164,25 @@ double NumberOf(const google::protobuf::Struct& document, const char* estimate, 
 TEST(Budget, ItsNumberOfSamplesGivesTheSameNumbersAgain) {
   const TestServer server;
   const std::string question =
-      "run first-hit --rho 0.5296 --delta 0.2 --epsilon 0.1 --exponent 1 --seed 4";
-  const auto answer = server.Json(Split(question + " --budget 0.05"));
-  const double samples = At(answer, "points", 0, "samples").number_value();
-  const auto again = server.Json(Split(absl::StrFormat("%s --samples %.0f", question, samples)));
+      "first-hit --rho 0.5296 --delta 0.2 --epsilon 0.1 --exponent 1 --seed 4";
+  const v1::PointResult answer = PointOf(server, question + " --budget 0.05");
+  const v1::PointResult again =
+      PointOf(server, absl::StrFormat("%s --samples %.0f", question, answer.samples()));
   // The blocks differ, so the same samples are summed in another order.
-  EXPECT_NEAR(NumberOf(answer, "mean_hit_time", "value"), NumberOf(again, "mean_hit_time", "value"),
-              1e-12 * NumberOf(answer, "mean_hit_time", "value"));
+  const double value = answer.estimates(0).value();
+  EXPECT_NEAR(again.estimates(0).value(), value, 1e-12 * value);
 }
 
 TEST(Spectrum, AnswersWhereItsStatedErrorIsWithinTheTolerance) {
   const TestServer server;
-  const std::string question =
-      "energy-relaxation --rho 0.53 --delta 0.01 --tolerance 0.003 --format json";
+  const std::string question = "energy-relaxation --rho 0.53 --delta 0.01 --tolerance 0.003";
   const std::string reason = "the limit's error, up to 0.00059, is within the tolerance";
   EXPECT_THAT(server.Client(Split("plan " + question)).out, HasSubstr(reason));
-  const auto answer = ParseJson(server.Client(Split("run " + question)).out);
-  EXPECT_EQ(TextOf(answer, "model"), "SPECTRUM");
-  EXPECT_EQ(TextOf(answer, "reason"), reason);
-  EXPECT_NEAR(NumberOf(answer, "relaxation_time", "model_error") /
-                  NumberOf(answer, "relaxation_time", "value"),
-              0.00059, 5e-6);
+  const v1::PointResult answer = PointOf(server, question);
+  EXPECT_EQ(answer.model(), v1::EnsembleSpec::SPECTRUM);
+  EXPECT_EQ(answer.reason(), reason);
+  EXPECT_EQ(answer.estimates(0).name(), "relaxation_time");
+  EXPECT_NEAR(answer.estimates(0).model_error() / answer.estimates(0).value(), 0.00059, 5e-6);
 }
 
 }  // namespace

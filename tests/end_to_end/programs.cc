@@ -1,7 +1,5 @@
 #include "tests/end_to_end/programs.h"
 
-#include <google/protobuf/util/json_util.h>
-
 namespace ballpiston {
 
 Words Split(const std::string& text) { return absl::StrSplit(text, ' ', absl::SkipEmpty()); }
@@ -23,37 +21,25 @@ ProcessOptions TestServer::Command(Words words) const {
   return ClientCommand(folder(), Joined({words, {"--server", address()}}));
 }
 
-ProcessResult TestServer::Client(Words words, const std::string& input) const {
-  ProcessOptions options = Command(std::move(words));
-  options.input = input;
-  return RunProgram(options);
+ProcessResult TestServer::Client(Words words) const {
+  return RunProgram(Command(std::move(words)));
 }
 
 std::unique_ptr<Process> TestServer::StartClient(Words words) const {
   return std::make_unique<Process>(Command(std::move(words)));
 }
 
-google::protobuf::Struct TestServer::Json(Words words) const {
-  const ProcessResult result = Client(Joined({words, {"--format", "json"}}));
+std::string TestServer::Output(const Words& words) const {
+  const ProcessResult result = Client(words);
   EXPECT_THAT(result, ExitsWith(0)) << testing::PrintToString(words);
-  return ParseJson(result.out);
+  return result.out;
 }
 
-std::string TestServer::Submit(Words words) const {
-  const ProcessResult result = Client(Joined({{"submit"}, words}));
-  EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_FALSE(result.out.empty());
-  return result.out.substr(0, result.out.find('\n'));
+std::string TestServer::Submit(const Words& words) const {
+  const std::string out = Output(Joined({{"submit"}, words}));
+  EXPECT_THAT(out, EndsWith("\n"));
+  return out.substr(0, out.find('\n'));
 }
-
-google::protobuf::Struct ParseJson(const std::string& text) {
-  google::protobuf::Struct object;
-  const auto status = google::protobuf::util::JsonStringToMessage(text, &object);
-  EXPECT_TRUE(status.ok()) << status.ToString() << "\n" << text.substr(0, 500);
-  return object;
-}
-
-int Length(const google::protobuf::Value& list) { return list.list_value().values_size(); }
 
 std::string PointsOf(const std::string& document) {
   const size_t begin = document.find("\"points\": [");

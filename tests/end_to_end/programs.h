@@ -2,10 +2,14 @@
 // tests in this folder.
 #pragma once
 
-#include <google/protobuf/struct.pb.h>
+#include <google/protobuf/util/json_util.h>
 
 #include <initializer_list>
 
+#include "ballpiston/file/v1/progress.pb.h"
+#include "ballpiston/file/v1/saved_result.pb.h"
+#include "ballpiston/v1/ensemble.pb.h"
+#include "ballpiston/v1/server.pb.h"
 #include "tests/support/preamble.h"
 #include "tests/support/process.h"
 #include "tests/support/server_process.h"
@@ -33,6 +37,15 @@ ProcessOptions ClientCommand(const TemporaryFolder& home, Words words);
 inline const auto kQuiet =
     testing::MatchesRegex("(Matplotlib is building the font cache[^\n]*\n)?");
 
+// Parses JSON of this message. If the text is something else, the test fails.
+template <typename Message>
+Message FromJson(const std::string& text) {
+  Message message;
+  const auto status = google::protobuf::util::JsonStringToMessage(text, &message);
+  EXPECT_TRUE(status.ok()) << status.ToString() << "\n" << text.substr(0, 500);
+  return message;
+}
+
 // A server that has started, and clients of it: `ballpiston WORDS... --server ADDRESS`.
 class TestServer : public ServerProcess {
  public:
@@ -40,45 +53,21 @@ class TestServer : public ServerProcess {
   explicit TestServer(ServerSetUp set_up) : ServerProcess(std::move(set_up)) { Start(); }
 
   ProcessOptions Command(Words words) const;
-  ProcessResult Client(Words words, const std::string& input = "") const;
+  ProcessResult Client(Words words) const;
   std::unique_ptr<Process> StartClient(Words words) const;
-  // Runs the client with `--format json` and returns its output. The test fails unless the client
-  // exits with 0.
-  google::protobuf::Struct Json(Words words) const;
-  std::string Submit(Words words) const;  // the name that `submit` prints
+  // The output of the client with `--format json`.
+  template <typename Message>
+  Message Json(const Words& words) const {
+    return FromJson<Message>(Output(Joined({words, {"--format", "json"}})));
+  }
+  v1::ServerStatus Status() const { return Json<v1::ServerStatus>({"status"}); }
+  // All jobs, the newest first, without their grids.
+  v1::ListEnsembleJobsResponse List() const { return Json<v1::ListEnsembleJobsResponse>({"list"}); }
+  std::string Submit(const Words& words) const;  // the name that `submit` prints
+
+ private:
+  std::string Output(const Words& words) const;  // of a client that exits with 0
 };
-
-// Parses strict JSON. If the text is not JSON, the test fails and the object is empty.
-google::protobuf::Struct ParseJson(const std::string& text);
-// The value at these keys and indices: At(json, "points", 0, "model").
-const google::protobuf::Value& At(const google::protobuf::Value& value);
-template <typename... Rest>
-const google::protobuf::Value& At(const google::protobuf::Value& value, const char* key,
-                                  Rest... rest);
-template <typename... Rest>
-const google::protobuf::Value& At(const google::protobuf::Value& value, int index, Rest... rest);
-template <typename... Rest>
-const google::protobuf::Value& At(const google::protobuf::Struct& object, const char* key,
-                                  Rest... rest) {
-  static const google::protobuf::Value absent;
-  const auto found = object.fields().find(key);
-  return found == object.fields().end() ? absent : At(found->second, rest...);
-}
-
-inline const google::protobuf::Value& At(const google::protobuf::Value& value) { return value; }
-template <typename... Rest>
-const google::protobuf::Value& At(const google::protobuf::Value& value, const char* key,
-                                  Rest... rest) {
-  return At(value.struct_value(), key, rest...);
-}
-template <typename... Rest>
-const google::protobuf::Value& At(const google::protobuf::Value& value, int index, Rest... rest) {
-  static const google::protobuf::Value absent;
-  if (index >= value.list_value().values_size()) return absent;
-  return At(value.list_value().values(index), rest...);
-}
-
-int Length(const google::protobuf::Value& list);
 
 // The bytes of "points" in a document of `result --format json`.
 std::string PointsOf(const std::string& document);

@@ -75,8 +75,6 @@ TEST_F(Security, ErrorsSayWhatToTry) {
   expect({"--tls"}, 3, "that this system knows");
   expect({"--ca", home_.File("ca.pem")}, 6, "CREDENTIALS_MISSING");
   expect(Known("wrong"), 6, "CREDENTIALS_INVALID");
-  chmod(home_.File("token_alice").c_str(), 0644);
-  expect(Known("alice"), 6, "chmod 600");
   WriteCertificate(authority_.IssueForHost("elsewhere.example.org"));
   Start(TlsFlags());
   expect({"--ca", home_.File("ca.pem")}, 3, "is for another host");

@@ -1,5 +1,4 @@
-// The flags of ballpistond: their spelling, their permitted values, and the file of --config.
-
+// The flags of ballpistond: help, permitted values, and the file of --config.
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
@@ -19,54 +18,18 @@ std::string Refusal(const Words& flags) {
   return result.err;
 }
 
-// ---- spelling ----
-
-// The flags of --help, by group.
-constexpr char kFlags[] =
-    "listen data-dir workers device watch-heartbeat-seconds idle-exit-seconds drain-seconds config "
-    "tls-certificate tls-key access-file "
-    "executor cluster-folder cluster-least-seconds cluster-lease-seconds "
-    "cluster-timeout-seconds cluster-worker "
-    "slurm-workers slurm-partition slurm-account slurm-cluster slurm-time-limit-minutes "
-    "slurm-option slurm-max-array-size slurm-query-seconds "
-    "max-active-jobs-per-principal max-active-points-per-principal max-points-per-job max-streams "
-    "max-streams-per-principal max-memory-mib retain-days max-store-bytes "
-    "log-level metrics-listen new-token check backup help version";
-
-// What --help describes: --NAME at the beginning of a line.
-std::multiset<std::string> FlagsOf(const std::string& page) {
-  std::multiset<std::string> flags;
-  std::istringstream lines(page);
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.starts_with("  -")) continue;
-    std::string names;
-    std::istringstream(line) >> names;
-    std::istringstream spellings(names);
-    for (std::string name; std::getline(spellings, name, ',');) flags.insert(name);
-  }
-  return flags;
-}
-
-TEST(ServerFlags, HelpListsEachOnceWithDashes) {
+TEST(ServerFlags, HelpHasDefaultsRangesAndExitCodesInShortLines) {
   const ProcessResult help = Server({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(help.err, "");
-  std::multiset<std::string> expected = {"--data_dir", "-h"};
-  for (const std::string& flag : Split(kFlags)) expected.insert("--" + flag);
-  EXPECT_EQ(FlagsOf(help.out), expected);
-  EXPECT_EQ(FlagsOf(Server({"-h"}).out), expected);
-}
-
-TEST(ServerFlags, HelpHasDefaultsRangesAndExitCodesInShortLines) {
-  const std::string page = Server({"--help"}).out;
+  EXPECT_EQ(Server({"-h"}).out, help.out);
   for (const char* text : {"\n\nLimits; 0 means no limit:\n", "--max-streams N:0 to 32768=2048\n",
                            "--drain-seconds SECONDS:0 to 3600=10\n", "{info,warning,error}=info\n",
                            "Default: ~/.local/state/ballpiston;", "--workers N:1 to 1024\n",
                            "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 "}) {
-    EXPECT_THAT(page, HasSubstr(text));
+    EXPECT_THAT(help.out, HasSubstr(text));
   }
-  std::istringstream lines(page);
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+  EXPECT_THAT(Words(absl::StrSplit(help.out, '\n')), Each(SizeIs(::testing::Le(100u))));
 }
 
 // ---- refusals ----
@@ -74,19 +37,14 @@ TEST(ServerFlags, HelpHasDefaultsRangesAndExitCodesInShortLines) {
 TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
   const std::string workers = " is refused; permitted: whole numbers, 1 to 1024";
   const std::string seconds = " is refused; permitted: 0 to 3600";
-  const std::string limit = " is refused; permitted: whole numbers, 0 to 1e+15";
-  const std::string days = " is refused; permitted: 0, or 0.001 to 1e+15";
   const struct {
     Words flags;
     std::string message;
   } table[] = {
       {{"--nonsense=1"}, "not expected: --nonsense=1"},
-      {{"--max_streams=3"}, "not expected: --max_streams=3"},
       {{"-workers=1"}, "not expected: -workers=1"},
       {{"data"}, "not expected: data"},
-      {{"--", "data"}, "not expected: data"},
       {{"--workers=2", "--workers", "2"}, "--workers: At Most 1"},
-      {{"--data-dir=a", "--data_dir=b"}, "--data-dir: At Most 1"},
       {{"--backup", "copy"}, "--check excludes --backup"},
       {{"--workers=0"}, "--workers: 0" + workers},
       {{"--workers=1025"}, "--workers: 1025" + workers},
@@ -94,24 +52,18 @@ TEST(ServerFlags, ARefusalNamesFlagValueAndPermittedValues) {
       {{"--workers=2.5"}, "--workers: 2.5" + workers},
       {{"--workers=02000"}, "--workers: 02000" + workers},  // not octal: 1024
       {{"--workers=99999999999999999999"}, "99999999999999999999" + workers},
-      {{"--workers=many"}, "--workers: many" + workers},
       {{"--workers", ""}, "--workers: " + workers},
-      {{"--drain-seconds", "-1"}, "--drain-seconds: -1" + seconds},
       {{"--drain-seconds=nan"}, "--drain-seconds: nan" + seconds},
-      {{"--drain-seconds=-inf"}, "--drain-seconds: -inf" + seconds},
       {{"--drain-seconds=10s"}, "--drain-seconds: 10s" + seconds},
       {{"--idle-exit-seconds=1e7"}, "permitted: 0 to 1000000"},
       {{"--watch-heartbeat-seconds=0"}, "permitted: 0.01 to 3600"},
       {{"--max-streams", "40000"},
        "--max-streams: 40000 is refused; permitted: whole numbers, 0 to 32768"},
-      {{"--max-points-per-job", "-1"}, "--max-points-per-job: -1" + limit},
-      {{"--max-points-per-job=1e30"}, "--max-points-per-job: 1e30" + limit},
-      {{"--retain-days", "-1e-9"}, "--retain-days: -1e-9" + days},
-      {{"--retain-days=1e-320"}, "--retain-days: 1e-320" + days},
-      {{"--retain-days=inf"}, "--retain-days: inf" + days},
+      {{"--max-points-per-job=1e30"}, "1e30 is refused; permitted: whole numbers, 0 to 1e+15"},
+      {{"--retain-days=1e-320"},
+       "--retain-days: 1e-320 is refused; permitted: 0, or 0.001 to 1e+15"},
       {{"--max-store-bytes=10"}, "10 is refused; permitted: whole numbers, 0, or 1000000 to 1e+15"},
       {{"--log-level", "-1"}, "--log-level: -1 not in {info,warning,error}"},
-      {{"--device=tpu"}, "--device: tpu not in {cpu,gpu}"},
       {{"--executor=slurm"}, "--cluster-folder: \"\" is not an absolute path"},
       {{"--executor=folder", "--cluster-folder=a"}, "\"a\" is not an absolute path"},
       {{"--cluster-folder=/a"}, "--cluster-folder needs --executor=folder"},
@@ -195,12 +147,11 @@ TEST_F(ConfigFile, GivesTheFlagsOfAServer) {
   ASSERT_TRUE(server.WaitForErr("listening on " + address));
   EXPECT_TRUE(server.WaitForErr("metrics at http://127.0.0.1:"));
   EXPECT_TRUE(std::filesystem::exists(home_.File("data/store.sqlite3")));
-  const ProcessResult status =
-      RunProgram(ClientCommand(home_, {"status", "--format", "json", "--server", address}));
-  EXPECT_EQ(At(ParseJson(status.out), "workers").number_value(), 1) << status.out << status.err;
-  EXPECT_EQ(At(ParseJson(status.out), "limits", "max_points_per_job").number_value(), 2);
-  EXPECT_EQ(At(ParseJson(status.out), "limits", "max_active_points_per_principal").number_value(),
-            3e7);
+  const auto status = FromJson<v1::ServerStatus>(
+      RunProgram(ClientCommand(home_, {"status", "--format", "json", "--server", address})).out);
+  EXPECT_EQ(status.workers(), 1);
+  EXPECT_EQ(status.limits().max_points_per_job(), 2);
+  EXPECT_EQ(status.limits().max_active_points_per_principal(), 3e7);
 }
 
 TEST_F(ConfigFile, CommandLineTakesPrecedence) {

@@ -42,7 +42,7 @@ class ServerTest : public ::testing::Test {
 TEST_F(ServerTest, OneCommandDoesTheJobInAnEmptyHome) {
   const ProcessResult result = Client(kRun);
   ASSERT_THAT(result, ExitsWith(0));
-  EXPECT_EQ(At(ParseJson(result.out), "job", "state").string_value(), "SUCCEEDED");
+  EXPECT_EQ(FromJson<file::v1::SavedResult>(result.out).job().state(), v1::EnsembleJob::SUCCEEDED);
   EXPECT_TRUE(fs::exists(State("server.log")));
   EXPECT_EQ(ModeOf(State("")), 0700u);
   EXPECT_EQ(ModeOf(State("server.socket")) & 077u, 0u);
@@ -67,7 +67,7 @@ TEST_F(ServerTest, ManyClientsAtOnceEndUpOnOnePrivateServer) {
   for (int i = 0; i < 6; ++i) clients.push_back(std::make_unique<Process>(run));
   for (const auto& client : clients) EXPECT_THAT(client->Wait(), ExitsWith(0));
   const ProcessResult list = Client({"list", "--format", "json"});
-  EXPECT_EQ(Length(At(ParseJson(list.out), "jobs")), 6);
+  EXPECT_EQ(FromJson<v1::ListEnsembleJobsResponse>(list.out).jobs_size(), 6);
   // Other servers may still be ending.
   const Words listening = absl::StrSplit(Contents(State("server.log")), "listening on");
   EXPECT_THAT(listening, SizeIs(2));
@@ -79,14 +79,14 @@ TEST_F(ServerTest, AWatchingClientStartsAKilledPrivateServerAgain) {
       home_, Split("run equilibrium --rho 0.53 --delta 0.2,0.1 --collisions 300000 --verify "
                    "--progress json --format json")));
   const std::string line = run.WaitForErrLine([](const std::string& text) {
-    return At(ParseJson(text), "progress", "samples").number_value() > 0;
+    return FromJson<file::v1::WatchProgress>(text).progress().samples() > 0;
   });
   ASSERT_NE(line, "");
   KillServers();
   EXPECT_TRUE(fs::exists(State("server.socket")));
   const ProcessResult result = run.Wait();
   EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_EQ(Length(At(ParseJson(result.out), "points")), 2);
+  EXPECT_EQ(FromJson<file::v1::SavedResult>(result.out).points_size(), 2);
 }
 
 TEST_F(ServerTest, ThePrivateServerIsStartedFoundAndStopped) {

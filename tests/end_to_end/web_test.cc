@@ -17,23 +17,6 @@ std::string Envelope(const std::string& json) {
          static_cast<char>(json.size()) + json;
 }
 
-struct Message {
-  int flags;
-  std::string json;
-};
-
-// The messages of a stream.
-std::vector<Message> Opened(const std::string& body) {
-  std::vector<Message> messages;
-  for (size_t at = 0; at + 5 <= body.size();) {
-    size_t length = 0;
-    for (size_t i = 1; i < 5; ++i) length = length << 8 | static_cast<unsigned char>(body[at + i]);
-    messages.push_back({body[at], body.substr(at + 5, length)});
-    at += 5 + length;
-  }
-  return messages;
-}
-
 class WebTest : public ::testing::Test {
  protected:
   WebTest() {
@@ -81,18 +64,14 @@ TEST_F(WebTest, AJobIsSubmittedWatchedAndReadAsByTheClient) {
       "grid": {"rho": [0.53], "delta": [0.2, 0.1], "epsilon": [0.1], "exponent": [1]}}})");
   ASSERT_EQ(created->status, 200) << created->body;
   EXPECT_EQ(created->get_header_value("Content-Type"), kUnary);
-  const std::string name = At(ParseJson(created->body), "name").string_value();
+  const std::string name = FromJson<v1::EnsembleJob>(created->body).name();
 
   const httplib::Result watched =
       Post("WatchEnsembleJob", Envelope(absl::StrCat("{\"name\": \"", name, "\"}")), {}, kStream);
   ASSERT_EQ(watched->status, 200);
   EXPECT_EQ(watched->get_header_value("Content-Type"), kStream);
-  const std::vector<Message> messages = Opened(watched->body);
-  ASSERT_GE(messages.size(), 2u);
-  EXPECT_EQ(messages.back().flags, 2);
-  EXPECT_EQ(messages.back().json, "{}");
-  const auto last = ParseJson(messages[messages.size() - 2].json);
-  EXPECT_EQ(At(last, "job", "state").string_value(), "SUCCEEDED");
+  EXPECT_THAT(watched->body,
+              AllOf(HasSubstr(R"("state":"SUCCEEDED")"), EndsWith(std::string("\2\0\0\0\2{}", 7))));
 
   const httplib::Result results = Post("ListResults", absl::StrCat("{\"parent\": \"", name, "\"}"));
   const ProcessResult lines = server_.Client({"result", name, "--format", "jsonl"});
@@ -121,7 +100,7 @@ TEST_F(WebTest, ErrorsHaveTheServersCodesReasonsAndViolations) {
   }
   const httplib::Result stream = Post("WatchEnsembleJob", "{}", {}, kStream);
   EXPECT_EQ(stream->status, 200);
-  EXPECT_THAT(Opened(stream->body).back().json, HasSubstr("in an envelope"));
+  EXPECT_THAT(stream->body, HasSubstr("in an envelope"));
   EXPECT_EQ(Post("WatchEnsembleJob", "{}")->status, 415);
   EXPECT_EQ(Post("GetEnsembleJob", "{}", {}, "text/plain")->status, 415);
   EXPECT_EQ(Post("/ballpiston.v1.EnsembleService/Nothing", "{}")->status, 404);
@@ -281,13 +260,15 @@ TEST_F(ReportTest, HasJobsWithTheirResultsInOneFile) {
   const std::string page = Contents(file_);
   EXPECT_THAT(page, StartsWith("<!doctype html>"));
   EXPECT_THAT(page, Not(HasSubstr(" src=\"")));  // nothing is loaded
-  constexpr char kBegin[] = "id=\"data\">";
-  const size_t begin = page.find(kBegin) + sizeof kBegin - 1;
-  const auto data = ParseJson(page.substr(begin, page.find("</script>", begin) - begin));
-  EXPECT_EQ(At(data, "jobs", 0, "job", "name").string_value(), first);
-  EXPECT_EQ(Length(At(data, "jobs", 0, "points")), 2);
-  EXPECT_EQ(Length(At(data, "jobs", 0, "points", 0, "histograms", 0, "counts")), 1000);
-  EXPECT_EQ(At(data, "jobs", 1, "job", "name").string_value(), second);
+  const size_t begin = page.find("{\"job\":");
+  const std::vector<std::string> jobs =
+      absl::StrSplit(page.substr(begin, page.find("]}</script>", begin) - begin), ",\n{\"job\":");
+  ASSERT_EQ(jobs.size(), 2u);
+  const auto shown = FromJson<file::v1::SavedResult>(jobs[0]);
+  EXPECT_EQ(shown.job().name(), first);
+  ASSERT_EQ(shown.points_size(), 2);
+  EXPECT_EQ(shown.points(0).histograms(0).counts_size(), 1000);
+  EXPECT_EQ(FromJson<file::v1::SavedResult>("{\"job\":" + jobs[1]).job().name(), second);
 }
 
 TEST_F(ReportTest, AFailureKeepsThePreviousFile) {
@@ -296,13 +277,9 @@ TEST_F(ReportTest, AFailureKeepsThePreviousFile) {
   EXPECT_EQ(Contents(file_), "before");
   const std::string job = server_.Submit(Split("equilibrium --rho 0.53 --delta 0.1"));
   EXPECT_THAT(server_.Client({"watch", job}), ExitsWith(0));
-  const ProcessResult nowhere = server_.Client({"report", job, "--out", "/no/such/folder/r.html"});
-  EXPECT_THAT(nowhere, ExitsWith(2));
-  EXPECT_THAT(nowhere.err, HasSubstr("--out: cannot write /no/such/folder/r.html: No such"));
   const ProcessResult full = server_.Client({"report", job, "--out", "/dev/full"});
   EXPECT_THAT(full, ExitsWith(2));
   EXPECT_THAT(full.err, HasSubstr("--out: cannot write /dev/full: No space left on device"));
-  EXPECT_THAT(server_.Client({"report", job}), ExitsWith(2));
 }
 
 }  // namespace

@@ -3,8 +3,6 @@
 namespace ballpiston {
 namespace {
 
-using google::protobuf::Struct;
-
 std::string Script() { return SourcePath("scripts/test-cluster.sh"); }
 
 void Run(std::vector<std::string> words) {
@@ -40,10 +38,9 @@ const std::string& PlainPoints(int samples) {
 }
 
 void ExpectSamples(const std::string& points, int samples) {
-  const Struct document = ParseJson("{" + points);
-  const google::protobuf::Value& list = At(document, "points");
-  ASSERT_EQ(Length(list), kPoints);
-  for (int i = 0; i < kPoints; ++i) EXPECT_EQ(At(list, i, "samples").number_value(), samples);
+  const auto result = FromJson<file::v1::SavedResult>("{" + points);
+  ASSERT_EQ(result.points_size(), kPoints);
+  for (const v1::PointResult& point : result.points()) EXPECT_EQ(point.samples(), samples);
 }
 
 }  // namespace
@@ -95,14 +92,12 @@ Sweep::~Sweep() {
 void Sweep::Submit() { job_ = server_->Submit(SweepOf(set_up_.samples)); }
 
 ClusterCounts Sweep::Counts() const {
-  const Struct status = server_->Json({"status"});
-  const google::protobuf::Value& cluster = At(status, "cluster");
-  const auto number = [&](const char* key) { return At(cluster, key).number_value(); };
-  return {.problem = At(cluster, "problem").string_value(),
-          .leases = number("waiting_leases") + number("taken_leases"),
-          .chunks = number("chunks"),
-          .lost = number("lost_leases"),
-          .refused = number("refused_files")};
+  const v1::ClusterStatus cluster = server_->Status().cluster();
+  return {.problem = cluster.problem(),
+          .leases = cluster.waiting_leases() + cluster.taken_leases(),
+          .chunks = cluster.chunks(),
+          .lost = cluster.lost_leases(),
+          .refused = cluster.refused_files()};
 }
 
 void Sweep::AwaitTasks() const {

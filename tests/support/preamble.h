@@ -26,7 +26,6 @@
 #include <future>
 #include <iomanip>
 #include <iostream>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>

@@ -27,16 +27,17 @@ struct Pipe {
   }
 };
 
-std::vector<std::string> Environment(const std::map<std::string, std::string>& changes) {
-  std::vector<std::string> variables;
-  for (char** entry = environ; *entry != nullptr; ++entry) {
-    const std::string variable = *entry;
-    if (changes.count(variable.substr(0, variable.find('='))) == 0) variables.push_back(variable);
+// `setpriv` kills the program when this thread ends; `env` sets its signals and its environment.
+std::vector<std::string> CommandLine(const ProcessOptions& options) {
+  std::vector<std::string> words = {"setpriv", "--pdeathsig", "KILL", "env",
+                                    "--default-signal=INT,HUP,TERM"};
+  for (const auto& [name, value] : options.environment) {
+    if (value.empty()) words.insert(words.begin() + 5, "--unset=" + name);
+    if (!value.empty()) words.push_back(name + "=" + value);
   }
-  for (const auto& [name, value] : changes) {
-    if (!value.empty()) variables.push_back(name + "=" + value);
-  }
-  return variables;
+  if (options.on_terminal) words.push_back("TERM=xterm");
+  words.insert(words.end(), options.command.begin(), options.command.end());
+  return words;
 }
 
 std::vector<char*> Pointers(const std::vector<std::string>& texts) {
@@ -44,28 +45,6 @@ std::vector<char*> Pointers(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) pointers.push_back(const_cast<char*>(text.c_str()));
   pointers.push_back(nullptr);
   return pointers;
-}
-
-// Writes until the text or the reader ends.
-void WriteAll(int descriptor, const std::string& text) {
-  sigset_t pipe;
-  sigemptyset(&pipe);
-  sigaddset(&pipe, SIGPIPE);
-  pthread_sigmask(SIG_BLOCK, &pipe, nullptr);  // of this thread, which writes nothing else
-  size_t written = 0;
-  while (written < text.size()) {
-    const ssize_t n = write(descriptor, text.data() + written, text.size() - written);
-    if (n <= 0) break;
-    written += static_cast<size_t>(n);
-  }
-  close(descriptor);
-}
-
-sigset_t SignalsThatEndPrograms() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGHUP, SIGTERM}) sigaddset(&signals, signal);
-  return signals;
 }
 
 // Repeats a system call that a signal has interrupted.
@@ -84,9 +63,6 @@ Process::Process(const ProcessOptions& options) : closed_(eventfd(0, EFD_CLOEXEC
   const Ends ends = options.on_terminal ? OpenTerminal(actions) : OpenPipes(actions);
   Start(options, actions);
   for (const int end : ends) close(end);
-  if (input_ >= 0) {
-    writer_ = std::thread([this, input = options.input] { WriteAll(input_, input); });
-  }
   for (Stream* stream : {&out_, &err_}) {
     stream->ended = stream->descriptor < 0;
     if (!stream->ended) stream->reader = std::thread([this, stream] { Read(*stream); });
@@ -109,30 +85,22 @@ Process::Ends Process::OpenTerminal(posix_spawn_file_actions_t& actions) {
 }
 
 Process::Ends Process::OpenPipes(posix_spawn_file_actions_t& actions) {
-  const Pipe in, out, err;
-  posix_spawn_file_actions_adddup2(&actions, in.read, STDIN_FILENO);
+  const Pipe out, err;
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, out.write, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, err.write, STDERR_FILENO);
-  input_ = in.write;
   out_.descriptor = out.read;
   err_.descriptor = err.read;
-  return {in.read, out.write, err.write};
+  return {out.write, err.write};
 }
 
 void Process::Start(const ProcessOptions& options, posix_spawn_file_actions_t& actions) {
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  const int session = options.on_terminal ? POSIX_SPAWN_SETSID : 0;
-  posix_spawnattr_setflags(&attributes, static_cast<short>(POSIX_SPAWN_SETSIGDEF | session));
-  const sigset_t signals = SignalsThatEndPrograms();
-  posix_spawnattr_setsigdefault(&attributes, &signals);
-  std::map<std::string, std::string> changes = options.environment;
-  if (options.on_terminal) changes["TERM"] = "xterm";
-  const std::vector<std::string> environment = Environment(changes);
-  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL"};
-  command.insert(command.end(), options.command.begin(), options.command.end());
+  posix_spawnattr_setflags(&attributes, options.on_terminal ? POSIX_SPAWN_SETSID : 0);
+  const std::vector<std::string> command = CommandLine(options);
   const int error = posix_spawnp(&pid_, command[0].c_str(), &actions, &attributes,
-                                 Pointers(command).data(), Pointers(environment).data());
+                                 Pointers(command).data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
@@ -199,6 +167,22 @@ bool Process::WaitFor(const Stream& stream, const std::string& text) {
   return found();
 }
 
+std::string Process::WaitForErrLine(const std::function<bool(const std::string&)>& wanted) {
+  std::unique_lock lock(mutex_);
+  std::string line;
+  size_t begin = 0;  // of the lines that follow
+  const auto found = [&] {
+    for (size_t end; (end = err_.text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+      line = err_.text.substr(begin, end - begin);
+      if (wanted(line)) return true;
+    }
+    return false;
+  };
+  bool is_found = false;
+  AwaitNotified(news_, lock, [&] { return (is_found = found()) || err_.ended; });
+  return is_found ? line : "";
+}
+
 bool Process::EndsWithin(std::chrono::milliseconds time) const {
   if (waited_) return true;
   pollfd end{static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)), POLLIN, 0};
@@ -220,7 +204,6 @@ ProcessResult Process::Wait() {
     }
     exit_code_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     waited_ = true;
-    if (writer_.joinable()) writer_.join();
     for (Stream* stream : {&out_, &err_}) {
       {
         // A program that this one started may keep the stream open.

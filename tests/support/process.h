@@ -17,7 +17,6 @@ namespace ballpiston {
 struct ProcessOptions {
   std::vector<std::string> command;                     // path, arguments
   std::map<std::string, std::string> environment = {};  // added to the test's; empty: removed
-  std::string input = {};                               // on standard input
   bool on_terminal = false;                             // runs on its own terminal
 };
 
@@ -56,8 +55,7 @@ class Process {
   bool WaitForOut(const std::string& text) { return WaitFor(out_, text); }  // standard output
   // Waits for a line of standard error for which `wanted` is true, and returns it; empty if the
   // program ended without one.
-  template <typename Wanted>
-  std::string WaitForErrLine(Wanted wanted);
+  std::string WaitForErrLine(const std::function<bool(const std::string&)>& wanted);
   // Waits until the program ends, but no longer than this. False if it still runs.
   bool EndsWithin(std::chrono::milliseconds time) const;
   ProcessResult Wait();  // until the program ends; later calls return the same
@@ -82,30 +80,9 @@ class Process {
   bool waited_ = false;
   mutable std::mutex mutex_;
   std::condition_variable news_;
-  Stream out_, err_;    // a terminal has one
-  int input_ = -1;      // a pipe to standard input
-  int closed_ = -1;     // an eventfd, which ends the reading of the terminal
-  std::thread writer_;  // of standard input
+  Stream out_, err_;  // a terminal has one
+  int closed_ = -1;   // an eventfd, which ends the reading of the terminal
 };
-
-template <typename Wanted>
-std::string Process::WaitForErrLine(Wanted wanted) {
-  std::unique_lock lock(mutex_);
-  size_t begin = 0;
-  while (true) {
-    const size_t end = err_.text.find('\n', begin);
-    if (end != std::string::npos) {
-      const std::string line = err_.text.substr(begin, end - begin);
-      if (wanted(line)) return line;
-      begin = end + 1;
-    } else if (err_.ended) {
-      return "";
-    } else {
-      const size_t length = err_.text.size();
-      AwaitNotified(news_, lock, [&] { return err_.text.size() > length || err_.ended; });
-    }
-  }
-}
 
 ProcessResult RunProgram(const ProcessOptions& options);
 

@@ -12,8 +12,6 @@ using Words = std::vector<std::string>;
 
 class CommandLineTest : public ProgramTest {};
 
-Words LinesIn(const std::string& text) { return absl::StrSplit(text, '\n', absl::SkipEmpty()); }
-
 TEST_F(CommandLineTest, TheProgramsPageIsItsHelp) {
   const Outcome program = Ballpiston({"--help"});
   EXPECT_EQ(program.code, 0);
@@ -86,21 +84,20 @@ TEST_F(CommandLineTest, NoLibraryLogsToStandardError) {
 }
 
 TEST_F(CommandLineTest, AWatchOfSeveralJobsPrintsEachAndReturnsTheWorst) {
-  server_.ensemble.jobs.push_back(job());
+  server_.jobs.push_back(job());
   job().set_name("ensembleJobs/d");
-  server_.ensemble.watches.push_back(
-      {{JobMessage(JobIn(v1::EnsembleJob::FAILED), "t")}, grpc::Status::OK});
+  server_.watches.push_back({{JobMessage(JobIn(v1::EnsembleJob::FAILED), "t")}, grpc::Status::OK});
   const Outcome outcome = WithServer({"watch", "abc", "d"});
   EXPECT_EQ(outcome.code, 4);
-  EXPECT_THAT(LinesIn(outcome.out), testing::UnorderedElementsAre("ensembleJobs/abc succeeded",
-                                                                  "ensembleJobs/abc failed"));
+  EXPECT_THAT(outcome.out, AnyOf("ensembleJobs/abc succeeded\nensembleJobs/abc failed\n",
+                                 "ensembleJobs/abc failed\nensembleJobs/abc succeeded\n"));
 }
 
 // The other job never ends.
 TEST_F(CommandLineTest, AWatchOfAnyJobEndsWithTheFirst) {
-  server_.ensemble.jobs.push_back(job());
+  server_.jobs.push_back(job());
   job().set_name("ensembleJobs/d");
-  server_.ensemble.watches.push_back(
+  server_.watches.push_back(
       {.messages = {JobMessage(JobIn(v1::EnsembleJob::RUNNING), "t")}, .hangs = true});
   const Outcome outcome = WithServer({"watch", "abc", "d", "--any"});
   EXPECT_EQ(outcome, (Outcome{0, "ensembleJobs/abc succeeded\n", ""}));
@@ -108,13 +105,13 @@ TEST_F(CommandLineTest, AWatchOfAnyJobEndsWithTheFirst) {
 
 // The points are many requests. Nobody reads them after the first error.
 TEST_F(CommandLineTest, AResultThatNobodyReadsIsNotFetched) {
-  server_.ensemble.points.resize(7);
+  server_.points.resize(7);
   server_.Start();
   std::ostream closed(nullptr);
   std::ostringstream err;
   Terminal terminal{.out = closed, .err = err};
   RunCommandLine({"result", "abc", "--format", "jsonl", "--server", server_.Address()}, terminal);
-  EXPECT_THAT(server_.ensemble.Asked().results, testing::SizeIs(1)) << err.str();
+  EXPECT_THAT(server_.Asked<v1::ListResultsRequest>(), testing::SizeIs(1)) << err.str();
 }
 
 TEST_F(CommandLineTest, AFigureWithoutItsNameIsAnErrorWithoutPython) {
@@ -153,22 +150,18 @@ TEST_F(CommandLineTest, AFigureStartsPythonAndReturnsItsExitCode) {
 // ---- exit codes ----
 
 TEST(ExitCode, FollowsFromTheStatus) {
-  const std::pair<absl::StatusCode, int> table[] = {{absl::StatusCode::kOk, 0},
-                                                    {absl::StatusCode::kInvalidArgument, 2},
-                                                    {absl::StatusCode::kOutOfRange, 2},
-                                                    {absl::StatusCode::kUnimplemented, 2},
-                                                    {absl::StatusCode::kUnavailable, 3},
-                                                    {absl::StatusCode::kDeadlineExceeded, 3},
-                                                    {absl::StatusCode::kFailedPrecondition, 4},
-                                                    {absl::StatusCode::kInternal, 4},
-                                                    {absl::StatusCode::kCancelled, 4},
-                                                    {absl::StatusCode::kResourceExhausted, 4},
-                                                    {absl::StatusCode::kNotFound, 5},
-                                                    {absl::StatusCode::kPermissionDenied, 6},
-                                                    {absl::StatusCode::kUnauthenticated, 6}};
-  for (const auto& [code, expected] : table) {
-    EXPECT_EQ(static_cast<int>(ExitCodeOf(absl::Status(code, "text"))), expected)
-        << absl::StatusCodeToString(code);
+  using Code = absl::StatusCode;
+  const std::map<int, std::vector<Code>> table = {
+      {0, {Code::kOk}},
+      {2, {Code::kInvalidArgument, Code::kOutOfRange, Code::kUnimplemented}},
+      {3, {Code::kUnavailable, Code::kDeadlineExceeded}},
+      {4, {Code::kFailedPrecondition, Code::kInternal, Code::kCancelled, Code::kResourceExhausted}},
+      {5, {Code::kNotFound}},
+      {6, {Code::kPermissionDenied, Code::kUnauthenticated}}};
+  for (const auto& [expected, codes] : table) {
+    for (const Code code : codes) {
+      EXPECT_EQ(static_cast<int>(ExitCodeOf(absl::Status(code, "text"))), expected) << code;
+    }
   }
 }
 

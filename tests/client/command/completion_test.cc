@@ -35,7 +35,6 @@ TEST_F(CompletionTest, OffersFlagsWithTheirTexts) {
                            Contains(StartsWith("--quiet\t")), Not(Contains(StartsWith("\t")))));
   EXPECT_EQ(Offers({"list", "--limit", "3", "--"}), flags);
   EXPECT_EQ(Offers({"list", "--server", "h:1", "--quiet", ""}), flags);
-  EXPECT_THAT(Offers({"server", "stop", "-"}), Contains(StartsWith("--data-dir\t")));
 }
 
 TEST_F(CompletionTest, OffersAnArgumentAtItsPlace) {
@@ -43,50 +42,10 @@ TEST_F(CompletionTest, OffersAnArgumentAtItsPlace) {
   EXPECT_EQ(Offers({"run", "--rho", "0.53", "--verify", ""}), Offers({"run", ""}));
   EXPECT_EQ(Offers({"run", "--rho", "=", "0.53", ""}), Offers({"run", ""}));
   EXPECT_EQ(Offers({"run", "--rho=0.53", ""}), Offers({"run", ""}));
-  for (const char* flag : {"--rho\t", "--cells\t", "--temperature\t", "--hot\t", "--cold\t"}) {
-    EXPECT_THAT(Offers({"run", "first-hit", ""}), Contains(StartsWith(flag)));
-  }
-  EXPECT_THAT(Offers({"completion", ""}), Contains("bash"));
-}
-
-TEST_F(CompletionTest, OffersTheJobsOfARunningServer) {
-  server_.ensemble.jobs.push_back(job());
-  job().set_name("ensembleJobs/d");
-  server_.ensemble.jobs.push_back(job());
-  server_.ensemble.jobs.back().set_name("ensembleJobs/$(date)");
-  home_.UseAsPrivateServer(server_.Address());
-  server_.Start();
-  EXPECT_THAT(Offers({"watch", ""}), ElementsAre("ensembleJobs/d", "ensembleJobs/abc"));
-  EXPECT_EQ(Offers({"cancel", "abc", "--verbose", ""}), Offers({"watch", ""}));
-  EXPECT_EQ(Offers({"pin", "--undo", "abc", ""}), Offers({"watch", ""}));
-  EXPECT_EQ(Offers({"submit", "--again", ""}), Offers({"watch", ""}));
-  EXPECT_THAT(Offers({"label", "abc", ""}), Contains(StartsWith("--server\t")));
-}
-
-TEST_F(CompletionTest, OffersFiguresAndTheirCommonFlags) {
-  EXPECT_THAT(Offers({"figure", ""}), Contains("mean-free-time"));
+  EXPECT_THAT(Offers({"run", "first-hit", ""}), Contains(StartsWith("--rho\t")));
   EXPECT_THAT(Offers({"figure", "--quick", "--out", "x", ""}), Contains("mean-free-time"));
-  EXPECT_THAT(Offers({"figure", "--out", ""}), ElementsAre("FILES"));
   EXPECT_THAT(Offers({"figure", "cell", ""}), Contains(StartsWith("--full\t")));
-}
-
-TEST_F(CompletionTest, OffersTheJobsOfTheServerThatTheWordsName) {
-  server_.Start();
-  const std::string& address = server_.Address();
-  EXPECT_THAT(Offers({"watch", "--server", address, ""}), ElementsAre("ensembleJobs/abc"));
-  EXPECT_THAT(Offers({"watch", "--server=" + address, ""}), ElementsAre("ensembleJobs/abc"));
-  const std::string path = address.substr(address.find(':') + 1);  // bash splits at colons and =
-  EXPECT_THAT(Offers({"watch", "--server", "=", "unix", ":", path, ""}),
-              ElementsAre("ensembleJobs/abc"));
-}
-
-TEST_F(CompletionTest, RequestsTheNewest50JobsWithoutGrids) {
-  home_.UseAsPrivateServer(server_.Address());
-  server_.Start();
-  Offers({"watch", ""});
-  const v1::ListEnsembleJobsRequest list = server_.ensemble.Asked().list.at(0);
-  EXPECT_EQ(list.page_size(), 50);
-  EXPECT_EQ(list.view(), v1::ListEnsembleJobsRequest::BASIC);
+  EXPECT_THAT(Offers({"label", "abc", ""}), Contains(StartsWith("--server\t")));
 }
 
 TEST_F(CompletionTest, StartsNoServer) {

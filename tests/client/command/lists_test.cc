@@ -8,12 +8,6 @@ namespace {
 
 // ---- number_list.h ----
 
-std::vector<double> List(const std::string& text) {
-  const auto list = ParseNumberList(text);
-  EXPECT_OK(list);
-  return list.value_or(std::vector<double>());
-}
-
 TEST(NumberList, HasNumbersAndRanges) {
   const std::pair<const char*, std::vector<double>> cases[] = {
       {"0.1,2,-3.5,1e-5,2.5E3,.5", {0.1, 2, -3.5, 1e-5, 2500, 0.5}},
@@ -24,7 +18,9 @@ TEST(NumberList, HasNumbersAndRanges) {
       {"1e-309:0.1:3:log", {1e-309, 1e-155, 0.1}},
       {"1e-120:1e120:3:log", {1e-120, 1, 1e120}},
       {"0.1,0.2:0.3:3,7", {0.1, 0.2, 0.25, 0.3, 7}}};
-  for (const auto& [text, numbers] : cases) EXPECT_EQ(List(text), numbers) << text;
+  for (const auto& [text, numbers] : cases) {
+    EXPECT_THAT(ParseNumberList(text), IsOkAndHolds(numbers)) << text;
+  }
 }
 
 TEST(NumberList, RejectsOtherTextsWithAReason) {
@@ -61,7 +57,6 @@ TEST(Count, IsAWholeNumberInAnyNotation) {
   for (const char* text : {"", "1.5", "1e-3", "1e30", "nan", "10k", " 1", "9223372036854775808"}) {
     EXPECT_THAT(ParseCount(text), StatusIs(absl::StatusCode::kInvalidArgument)) << text;
   }
-  EXPECT_THAT(ParseCount("1e18"), IsOkAndHolds(1'000'000'000'000'000'000));
   EXPECT_THAT(ParseCount("1e30").status().message(), HasSubstr("at most 9223372036854775807"));
 }
 
@@ -90,28 +85,26 @@ TEST(ShapeList, HasChainsLatticesAndRanges) {
 }
 
 TEST(ShapeList, RejectsOtherTextsWithAReason) {
-  const std::pair<const char*, std::vector<std::string>> cases[] = {
-      {"'4x4:8x8:2' has an end that is not a decimal number", {"4x4:8x8:2"}},
-      {"'1:5' is not a range", {"1:5"}},
-      {"'1:5:1' has two different ends and a count of 1", {"1:5:1"}},
-      {"has more than 100000 shapes", {"1:100000:100000,5"}}};
-  for (const auto& [reason, texts] : cases) {
-    for (const std::string& text : texts) {
-      EXPECT_THAT(ParseShapeList(text),
-                  StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(reason)))
-          << text;
-    }
+  const std::pair<std::string, std::string> cases[] = {
+      {"4x4:8x8:2", "'4x4:8x8:2' has an end that is not a decimal number"},
+      {"1:5", "'1:5' is not a range"},
+      {"1:5:1", "'1:5:1' has two different ends and a count of 1"},
+      {"1:100000:100000,5", "has more than 100000 shapes"}};
+  for (const auto& [text, reason] : cases) {
+    EXPECT_THAT(ParseShapeList(text),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(reason)));
   }
 }
 
 // ---- points_file.h ----
 
+// With a byte order mark, the quotes of R's write.csv, and empty lines.
 TEST(PointsFile, FillsTheListsThatItsHeaderNames) {
   v1::Grid grid;
   grid.add_exponent(1);
   ASSERT_OK(ParsePoints("p.csv",
-                        "\xEF\xBB\xBF"
-                        "delta,rho, cells\r\n0.1,0.53,4x3\r\n1e-3,0.6,1e3\r\n\n",
+                        "\xEF\xBB\xBF\n"
+                        "delta,\"rho\", cells\r\n0.1,0.53,\"4x3\"\r\n \r\n1e-3,\"0.6\",1e3\r\n\n",
                         grid));
   EXPECT_THAT(grid.table(), ElementsAre("delta", "rho", "cells"));
   EXPECT_THAT(grid.delta(), ElementsAre(0.1, 1e-3));
@@ -120,21 +113,8 @@ TEST(PointsFile, FillsTheListsThatItsHeaderNames) {
   EXPECT_THAT(grid.exponent(), ElementsAre(1));
 }
 
-// R's write.csv writes the header so.
-TEST(PointsFile, MayHaveQuotesAndEmptyLines) {
-  v1::Grid grid;
-  ASSERT_OK(ParsePoints("p.csv", "\n\"rho\",\"cells\"\r\n0.53,\"4x3\"\r\n \r\n\"0.6\",12\n", grid));
-  EXPECT_THAT(grid.table(), ElementsAre("rho", "cells"));
-  EXPECT_THAT(grid.rho(), ElementsAre(0.53, 0.6));
-  EXPECT_THAT(grid.cells(), ElementsAre("4x3", "12"));
-}
-
 TEST(PointsFile, AnErrorNamesTheLineAndTheColumn) {
-  struct Wrong {
-    const char* csv;
-    const char* message;
-  };
-  const Wrong kWrong[] = {
+  const std::pair<std::string, std::string> table[] = {
       {"", "p.csv: is empty"},
       {"\n \n", "p.csv: is empty"},
       {"rho,delta\n", "p.csv: has no row below its header"},
@@ -143,16 +123,15 @@ TEST(PointsFile, AnErrorNamesTheLineAndTheColumn) {
       {"rho,table\n0.5,0.1\n", "line 1: the column 'table' is not one of"},
       {"rho,rho\n0.5,0.1\n", "line 1: the column rho is there twice"},
       {"rho,epsilon\n0.5,0.1\n", "has the column epsilon, and --epsilon is given"},
-      {"rho,delta\n0.5,0.1\n0.5\n", "line 3 has 1 value; the header names 2 columns"},
       {"rho,delta\n0.5,0.1\n0.5,x\n", "line 3, column delta: 'x' is not a decimal number"},
       {"rho,delta\n0.5,\n", "line 2, column delta: '' is not a decimal number"},
-      {"rho,delta\n\n0.5\n", "line 3 has 1 value;"}};
-  for (const Wrong& wrong : kWrong) {
+      {"rho,delta\n\n0.5\n", "line 3 has 1 value; the header names 2 columns"}};
+  for (const auto& [csv, message] : table) {
     v1::Grid grid;
     grid.add_epsilon(0.1);
-    EXPECT_THAT(ParsePoints("p.csv", wrong.csv, grid),
-                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(wrong.message)))
-        << wrong.csv;
+    EXPECT_THAT(ParsePoints("p.csv", csv, grid),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(message)))
+        << csv;
   }
 }
 

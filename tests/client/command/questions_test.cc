@@ -63,29 +63,20 @@ TEST(SpecFile, MayBeginWithAByteOrderMark) {
   EXPECT_EQ(spec->ShortDebugString(), R"(grid { rho: 0 cells: "4x3" })");
 }
 
-TEST(SpecFile, NamesTheUnknownField) {
-  EXPECT_THAT(ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "s\u001bed": 1})"),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("sed")));
-}
-
-// The JSON parser would take the last value.
-TEST(SpecFile, ARepeatedKeyIsRefused) {
-  for (const char* json :
-       {R"({"seed": 1, "seed": 1})", R"({"grid": {"seed": [1], "seed": [2]}})"}) {
+// The JSON parser would take the last value of a repeated key, drop a null and merge the lists.
+TEST(SpecFile, AnErrorNamesTheFieldOrTheKey) {
+  const std::string list = ": its list contains null or a list";
+  const std::pair<std::string, std::string> table[] = {
+      {R"({"experiment": "FIRST_HIT", "s\u001bed": 1})", "sed"},
+      {R"({"seed": 1, "seed": 1})", "--spec s.json: Repeated map key: 'seed' is already set."},
+      {R"({"grid": {"seed": [1], "seed": [2]}})", "Repeated map key: 'seed' is already set."},
+      {R"({"grid": {"rho": [0.53, null, 0.6]}})", "grid.rho" + list},
+      {R"({"grid": {"rho": [[0.53], [0.54]]}})", "grid.rho" + list},
+      {R"({"grid": {"rho": null, "cells": [null]}})", "grid.cells" + list}};
+  for (const auto& [json, message] : table) {
     EXPECT_THAT(ParseSpec("s.json", json),
-                StatusIs(absl::StatusCode::kInvalidArgument,
-                         "--spec s.json: Repeated map key: 'seed' is already set."));
-  }
-}
-
-// The JSON parser would drop a null, and merge the lists.
-TEST(SpecFile, AListWithNullOrAListIsRefused) {
-  for (const auto& [list, name] : {std::pair("[0.53, null, 0.6]", "grid.rho"),
-                                   {"[[0.53], [0.54]]", "grid.rho"},
-                                   {"null, \"cells\": [null]", "grid.cells"}}) {
-    EXPECT_THAT(ParseSpec("s.json", absl::StrCat(R"({"grid": {"rho": )", list, "}}")),
-                StatusIs(absl::StatusCode::kInvalidArgument,
-                         HasSubstr(absl::StrCat(name, ": its list contains null or a list"))));
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(message)))
+        << json;
   }
 }
 
@@ -108,12 +99,12 @@ class CreateJobTest : public ProgramTest {
     words.insert(words.begin(), {"submit", "--resume"});
     const Outcome outcome = WithServer(words);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return server_.ensemble.Asked().create.back().request_id();
+    return server_.Asked<v1::CreateEnsembleJobRequest>().back().request_id();
   }
 };
 
 TEST_F(CreateJobTest, ResumedJobsOfOneSpecificationHaveOneRequestId) {
-  server_.server.status.set_engine_version("7");
+  server_.status.set_engine_version("7");
   const std::string id = IdOfResumed({"first-hit", "--rho", "0.53"});
   EXPECT_EQ(IdOfResumed({"first-hit", "--rho=0.53"}), id);
   for (const std::vector<std::string>& other :
@@ -124,25 +115,18 @@ TEST_F(CreateJobTest, ResumedJobsOfOneSpecificationHaveOneRequestId) {
         {"first-hit", "--rho", "0.53", "--priority", "1"}}) {
     EXPECT_NE(IdOfResumed(other), id);
   }
-  server_.server.status.set_engine_version("8");
+  server_.status.set_engine_version("8");
   EXPECT_NE(IdOfResumed({"first-hit", "--rho", "0.53"}), id);
 }
 
-TEST_F(CreateJobTest, ResumeAfterAFailedOrCancelledJobCreatesANewJob) {
-  server_.ensemble.created_states = {v1::EnsembleJob::FAILED, v1::EnsembleJob::CANCELLED,
-                                     v1::EnsembleJob::CANCELLING, v1::EnsembleJob::QUEUED};
+TEST_F(CreateJobTest, ResumeAfterALostJobCreatesANewJob) {
+  server_.created = {JobIn(v1::EnsembleJob::FAILED), JobIn(v1::EnsembleJob::CANCELLED),
+                     JobIn(v1::EnsembleJob::CANCELLING),
+                     FromText<v1::EnsembleJob>("state: SUCCEEDED results_expired: true")};
   EXPECT_EQ(WithServer({"submit", "--resume", "first-hit"}).code, 0);
-  const auto asked = server_.ensemble.Asked().create;
-  ASSERT_EQ(asked.size(), 4u);
-  for (size_t i = 1; i < 4; ++i) EXPECT_NE(asked[i].request_id(), asked[i - 1].request_id());
-}
-
-TEST_F(CreateJobTest, WithoutResumeEachJobHasANewRequestId) {
-  server_.ensemble.created_states = {v1::EnsembleJob::FAILED};
-  for (int i = 0; i < 2; ++i) EXPECT_EQ(WithServer({"submit", "first-hit"}).code, 0);
-  const auto asked = server_.ensemble.Asked().create;
-  ASSERT_EQ(asked.size(), 2u);
-  EXPECT_NE(asked[0].request_id(), asked[1].request_id());
+  const auto asked = server_.Asked<v1::CreateEnsembleJobRequest>();
+  ASSERT_EQ(asked.size(), 5u);
+  for (size_t i = 1; i < 5; ++i) EXPECT_NE(asked[i].request_id(), asked[i - 1].request_id());
 }
 
 // Such a request is larger than gRPC's default limit of 4 MiB; the server has a different limit.
@@ -152,7 +136,8 @@ TEST_F(CreateJobTest, LargeRequestsAreSent) {
   const Outcome outcome = WithServer({"submit", "first-hit", "--rho", list, "--delta", list,
                                       "--epsilon", list, "--exponent", list});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(server_.ensemble.Asked().create.at(0).spec().grid().exponent_size(), 100'000);
+  EXPECT_EQ(server_.Asked<v1::CreateEnsembleJobRequest>().at(0).spec().grid().exponent_size(),
+            100'000);
 }
 
 }  // namespace

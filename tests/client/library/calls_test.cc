@@ -11,7 +11,7 @@ namespace {
 
 class ClientTest : public ::testing::Test {
  protected:
-  ClientTest() { server_.ensemble.jobs = {JobIn(v1::EnsembleJob::QUEUED)}; }
+  ClientTest() { server_.jobs = {JobIn(v1::EnsembleJob::QUEUED)}; }
 
   Client StartServer() {
     server_.Start();
@@ -24,67 +24,58 @@ class ClientTest : public ::testing::Test {
 TEST_F(ClientTest, EachCreateHasANewRequestId) {
   const Client client = StartServer();
   for (int i = 0; i < 2; ++i) ASSERT_OK(client.Create(v1::EnsembleSpec()));
-  const auto asked = server_.ensemble.Asked().create;
+  const auto asked = server_.Asked<v1::CreateEnsembleJobRequest>();
   EXPECT_NE(asked[0].request_id(), asked[1].request_id());
 }
 
 TEST_F(ClientTest, ResultsGathersAllPagesInTheRequestedView) {
-  for (int i = 0; i < 5; ++i) server_.ensemble.points.emplace_back().set_index(i);
+  for (int i = 0; i < 5; ++i) server_.points.emplace_back().set_index(i);
   ASSERT_OK_AND_ASSIGN(const auto points,
-                       StartServer().Results("ensembleJobs/a", v1::ListResultsRequest::BASIC));
+                       StartServer().Results(kJobName, v1::ListResultsRequest::BASIC));
   ASSERT_EQ(points.size(), 5u);
   for (int i = 0; i < 5; ++i) EXPECT_EQ(points[static_cast<size_t>(i)].index(), i);
-  const auto asked = server_.ensemble.Asked().results;
+  const auto asked = server_.Asked<v1::ListResultsRequest>();
   ASSERT_EQ(asked.size(), 3u);
   for (const auto& request : asked) {
-    EXPECT_EQ(request.parent(), "ensembleJobs/a");
+    EXPECT_EQ(request.parent(), kJobName);
     EXPECT_EQ(request.view(), v1::ListResultsRequest::BASIC);
   }
 }
 
 TEST_F(ClientTest, LargeAnswersAreReceived) {
-  server_.server.status.set_version(std::string(5 << 20, 'v'));
+  server_.status.set_version(std::string(5 << 20, 'v'));
   ASSERT_OK_AND_ASSIGN(const v1::ServerStatus status, StartServer().Status());
   EXPECT_EQ(status.version().size(), size_t{5 << 20});
 }
 
 TEST_F(ClientTest, ListStopsAtItsLimit) {
-  server_.ensemble.jobs.assign(5, JobIn(v1::EnsembleJob::QUEUED));
+  server_.jobs.assign(5, JobIn(v1::EnsembleJob::QUEUED));
   const Client client = StartServer();
   v1::ListEnsembleJobsRequest request;
   request.set_page_token("4");  // has no effect
   ASSERT_OK_AND_ASSIGN(const auto jobs, client.List(request, 3));
   EXPECT_EQ(jobs.size(), 3u);
-  const auto asked = server_.ensemble.Asked().list;
+  const auto asked = server_.Asked<v1::ListEnsembleJobsRequest>();
   ASSERT_EQ(asked.size(), 2u);  // pages of two
   EXPECT_EQ(asked[1].page_size(), 1);
   EXPECT_OK(client.List(request, 0));
-  EXPECT_THAT(server_.ensemble.Asked().list, SizeIs(2));
-}
-
-TEST_F(ClientTest, APinIsRepeated) {
-  server_.ensemble.unavailable_attempts = 2;
-  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, StartServer().Pin(kJobName, true));
-  EXPECT_TRUE(job.pinned());
-  const auto asked = server_.ensemble.Asked().update;
-  ASSERT_EQ(asked.size(), 3u);
-  EXPECT_EQ(asked[2].job().name(), kJobName);
-  EXPECT_TRUE(asked[2].job().pinned());
-  EXPECT_THAT(asked[2].update_mask().paths(), testing::ElementsAre("pinned"));
+  EXPECT_THAT(server_.Asked<v1::ListEnsembleJobsRequest>(), SizeIs(2));
 }
 
 // Without the server's wish the three attempts would take 0.4 s at most.
-TEST_F(ClientTest, ARetryWaitsAsLongAsTheServerAsks) {
-  server_.ensemble.unavailable_attempts = 2;
-  server_.ensemble.pushback = "400";
+TEST_F(ClientTest, APinIsRepeatedAfterThePausesThatTheServerAsksFor) {
+  server_.unavailable_attempts = 2;
+  server_.pushback = "400";
   const Client client = StartServer();
   const absl::Time begin = absl::Now();
-  EXPECT_OK(client.Pin(kJobName, true));
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Pin(kJobName, true));
   EXPECT_GE(absl::Now() - begin, absl::Milliseconds(790));
+  EXPECT_TRUE(job.pinned());
+  EXPECT_THAT(server_.Asked<v1::UpdateEnsembleJobRequest>(), SizeIs(3));
 }
 
 TEST_F(ClientTest, ACallbackEndsATrace) {
-  server_.trace.messages.resize(100'000);
+  server_.orbit.resize(100'000);
   int messages = 0;
   EXPECT_OK(StartServer().Trace({}, [&](const v1::TraceOrbitResponse&) { return ++messages < 3; }));
   EXPECT_EQ(messages, 3);
@@ -92,8 +83,8 @@ TEST_F(ClientTest, ACallbackEndsATrace) {
 
 // The messages that it has read would come twice.
 TEST_F(ClientTest, AStreamIsNotRepeatedAfterItsFirstMessage) {
-  server_.trace.messages.resize(1);
-  server_.trace.end = grpc::Status(grpc::StatusCode::UNAVAILABLE, "stops");
+  server_.orbit.resize(1);
+  server_.trace_end = grpc::Status(grpc::StatusCode::UNAVAILABLE, "stops");
   server_.Start();
   int revivals = 0, messages = 0;
   const Client client(server_.Channel(), absl::FromChrono(kPatience), [&revivals] {

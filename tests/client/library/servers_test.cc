@@ -1,5 +1,4 @@
 // Programs that the client starts, servers of this machine, and the private server.
-#include <fcntl.h>
 #include <sys/file.h>
 
 #include "client/library/child_process.h"
@@ -52,12 +51,6 @@ TEST_F(ChildProcessTest, IgnoresSighupIfThisProgramDoes) {
   EXPECT_EQ(Output(), "survived\n");
 }
 
-TEST_F(ChildProcessTest, AMissingProgramIsNotFound) {
-  EXPECT_THAT(
-      RunChild({.command = {"/no/such/program"}, .folder = "", .output = "", .detached = false}),
-      StatusIs(absl::StatusCode::kNotFound));
-}
-
 // ---- server_process.h ----
 
 // A fake server as a shell script; $2 is its data folder. The server takes the lock, writes its
@@ -95,24 +88,19 @@ TEST_F(ServerProcessTest, GetsItsFlagsInItsFolder) {
 }
 
 TEST_F(ServerProcessTest, ErrorQuotesTheLastLineOfAProgramThatEnds) {
-  EXPECT_THAT(
-      StartServer(Program("echo first; echo the disk is full; exit 9")),
-      StatusIs(absl::StatusCode::kUnavailable,
-               HasSubstr("ended at once with exit status 9: the disk is full\n  log: " + data_)));
-  EXPECT_THAT(StartServer(Program("exit 9")),
-              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("(it wrote nothing)")));
+  const auto expect_error = [&](const std::string& script, const std::string& text) {
+    EXPECT_THAT(StartServer(Program(script)),
+                StatusIs(absl::StatusCode::kUnavailable, HasSubstr(text + "\n  log: " + data_)));
+  };
+  expect_error("echo first; echo the disk is full; exit 9",
+               "ended at once with exit status 9: the disk is full");
+  expect_error("exit 9", "(it wrote nothing)");
   const auto old = signal(SIGCHLD, SIG_IGN);  // the system then keeps no exit status
-  EXPECT_THAT(StartServer(Program("exit 9")),
-              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("ended at once: (it wrote")));
+  expect_error("exit 9", "ended at once: (it wrote nothing)");
   signal(SIGCHLD, old);
-}
-
-TEST_F(ServerProcessTest, ErrorSaysThatTheLogCannotBeWritten) {
-  const ServerProgram program = Program("echo hidden; exit 1");
-  std::filesystem::create_symlink("/dev/full", program.Log());
-  EXPECT_THAT(StartServer(program),
-              StatusIs(absl::StatusCode::kUnavailable,
-                       HasSubstr("its log cannot be written: No space left on device\n  log: ")));
+  std::filesystem::remove(Program("").Log());
+  std::filesystem::create_symlink("/dev/full", Program("").Log());
+  expect_error("echo hidden; exit 1", "its log cannot be written: No space left on device");
 }
 
 TEST_F(ServerProcessTest, ErrorNamesAMissingProgram) {
@@ -211,13 +199,10 @@ TEST_F(LocalServerTest, IsInTheStateFolderOfTheUser) {
   EXPECT_EQ(server.socket, server.folder + "/server.socket");
   EXPECT_EQ(ModeOf(server.folder), 0700u);
   EXPECT_EQ(ModeOf(home_ / ".local"), 0700u);
-}
-
-TEST_F(LocalServerTest, FollowsXdgStateHome) {
   state_home_.Set((home_ / "state").string());
   EXPECT_EQ(FindLocalServer()->folder, home_.string() + "/state/ballpiston");
   state_home_.Set("relative");  // the XDG specification says: ignore it
-  EXPECT_EQ(FindLocalServer()->folder, home_.string() + "/.local/state/ballpiston");
+  EXPECT_EQ(FindLocalServer()->folder, server.folder);
 }
 
 TEST_F(LocalServerTest, AStateFolderThatOthersCanChangeIsRefused) {
@@ -278,25 +263,12 @@ TEST_F(LocalServerTest, PermanentFailuresToStartKeepTheirStatus) {
   }
 }
 
-// Holds the lock of the folder, as a server of another client does.
-class FolderInUse {
- public:
-  explicit FolderInUse(const fs::path& folder)
-      : lock_(open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
-    EXPECT_EQ(flock(lock_, LOCK_EX | LOCK_NB), 0);
-  }
-  ~FolderInUse() { Leave(); }
-  FolderInUse(const FolderInUse&) = delete;
-  FolderInUse& operator=(const FolderInUse&) = delete;
-
-  void Leave() {
-    if (lock_ >= 0) close(lock_);
-    lock_ = -1;
-  }
-
- private:
-  int lock_;
-};
+// Holds the lock of the folder, as a server of another client does, until the file is closed.
+std::shared_ptr<FILE> FolderInUse(const fs::path& folder) {
+  std::shared_ptr<FILE> lock(fopen((folder / "lock").c_str(), "ae"), &fclose);
+  EXPECT_EQ(flock(fileno(lock.get()), LOCK_EX | LOCK_NB), 0);
+  return lock;
+}
 
 // Waits until the file exists or a stop is requested.
 void AwaitFile(const fs::path& file, const std::stop_token& stop) {
@@ -304,7 +276,7 @@ void AwaitFile(const fs::path& file, const std::stop_token& stop) {
 }
 
 TEST_F(LocalServerTest, AFolderInUseIsUnavailable) {
-  const FolderInUse in_use(home_);
+  const auto in_use = FolderInUse(home_);
   EXPECT_THAT(ConnectToLocalServer({.folder = home_.string(),
                                     .socket = home_ / "socket",
                                     .program = Program("exit 2"),
@@ -317,7 +289,7 @@ TEST_F(LocalServerTest, DoesNotWaitForAServerThatListensElsewhere) {
                            .socket = home_ / "socket",
                            .program = Program("echo why; exit 2"),
                            .start_time = absl::FromChrono(kUnreachedLimit)};
-  const FolderInUse in_use(home_);
+  const auto in_use = FolderInUse(home_);
   WriteFile(home_ / "server.address", "127.0.0.1:50051\n");
   EXPECT_THAT(ConnectToLocalServer(server),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("listens at 127.0.0.1:50051")));
@@ -327,7 +299,7 @@ TEST_F(LocalServerTest, DoesNotWaitForAServerThatListensElsewhere) {
 // or the test ends.
 TEST_F(LocalServerTest, StartsAServerWhenAnotherLeavesTheFolder) {
   FakeServer second;
-  FolderInUse in_use(home_);
+  auto in_use = FolderInUse(home_);
   const LocalServer server{
       .folder = home_.string(),
       .socket = second.SocketPath(),
@@ -339,7 +311,7 @@ TEST_F(LocalServerTest, StartsAServerWhenAnotherLeavesTheFolder) {
       .start_time = absl::FromChrono(kPatience)};
   std::jthread starter([&](const std::stop_token& stop) {
     AwaitFile(home_ / "once", stop);
-    in_use.Leave();
+    in_use.reset();
     AwaitFile(home_ / "twice", stop);
     second.Start();
   });

@@ -23,13 +23,14 @@ WatchScript Succeeded(const std::string& token = "t") {
 class JobWatch : public ::testing::Test {
  protected:
   JobWatch() {
+    server_.jobs = {JobIn(Job::QUEUED)};
     options_.initial_backoff = absl::Milliseconds(1);
     options_.max_backoff = absl::Milliseconds(4);
     options_.give_up_after = absl::FromChrono(kPatience);
   }
 
   void Start(std::vector<WatchScript> watches) {
-    server_.ensemble.watches = std::move(watches);
+    server_.watches = std::move(watches);
     server_.Start();
   }
 
@@ -50,8 +51,9 @@ class JobWatch : public ::testing::Test {
 
   std::vector<std::string> Tokens() const {
     std::vector<std::string> tokens;
-    const auto asked = server_.ensemble.Asked();
-    for (const auto& request : asked.watch) tokens.push_back(request.resume_token());
+    for (const auto& request : server_.Asked<v1::WatchEnsembleJobRequest>()) {
+      tokens.push_back(request.resume_token());
+    }
     return tokens;
   }
 
@@ -75,9 +77,12 @@ TEST_F(JobWatch, ReportsSnapshotsAndEndsWithTheJob) {
   EXPECT_THAT(samples_, ElementsAre(10, 20));
 }
 
+// An end of the stream without the terminal state is a disconnection.
 TEST_F(JobWatch, PassesTheLastResumeTokenOn) {
   Start({Unavailable({JobMessage(JobIn(Job::RUNNING), "t1"), SnapshotMessage(10, "t2")}),
-         Unavailable(), Unavailable({SnapshotMessage(20, "t3")}), Succeeded("t4")});
+         Unavailable(),
+         {{SnapshotMessage(20, "t3")}, grpc::Status::OK},
+         Succeeded("t4")});
   EXPECT_OK(Watch());
   EXPECT_THAT(Tokens(), ElementsAre("", "t2", "t2", "t3"));
   EXPECT_THAT(samples_, ElementsAre(10, 20));
@@ -92,12 +97,6 @@ TEST_F(JobWatch, ShowsTheTerminalStateOnce) {
   EXPECT_EQ(job.state(), Job::CANCELLED);
   EXPECT_THAT(states_, ElementsAre(Job::CANCELLED));
   EXPECT_THAT(Tokens(), SizeIs(1));
-}
-
-TEST_F(JobWatch, AnEndWithoutTheTerminalStateIsADisconnection) {
-  Start({{{SnapshotMessage(10, "t1")}, grpc::Status::OK}, Succeeded()});
-  EXPECT_OK(Watch());
-  EXPECT_THAT(Tokens(), ElementsAre("", "t1"));
 }
 
 TEST_F(JobWatch, OtherErrorsEndTheWatch) {
@@ -152,16 +151,9 @@ TEST_F(JobWatch, WaitsForABusyServer) {
   EXPECT_THAT(pauses_, SizeIs(1));
 }
 
-TEST_F(JobWatch, ReturnsTheErrorOfAServerThatStaysBusy) {
-  Start({TooManyStreams()});
-  options_.give_up_after = absl::Milliseconds(50);
-  EXPECT_THAT(Watch(), StatusIs(absl::StatusCode::kResourceExhausted,
-                                HasSubstr("2 open streams (TOO_MANY_STREAMS)")));
-}
-
 // No server listens at the address for a while, as during a restart.
 TEST_F(JobWatch, WaitsForAnAbsentServer) {
-  server_.ensemble.watches = {Succeeded()};
+  server_.watches = {Succeeded()};
   after_disconnect_ = [this] {
     if (pauses_.size() == 3) server_.Start();
   };
@@ -177,6 +169,13 @@ TEST_F(JobWatch, GivesUpAfterTheConfiguredTime) {
               StatusIs(absl::StatusCode::kUnavailable,
                        HasSubstr("gave up watching after 50ms without a connection: connection "
                                  "reset")));
+}
+
+TEST_F(JobWatch, ReturnsTheErrorOfAServerThatStaysBusy) {
+  Start({TooManyStreams()});
+  options_.give_up_after = absl::Milliseconds(50);
+  EXPECT_THAT(Watch(), StatusIs(absl::StatusCode::kResourceExhausted,
+                                HasSubstr("2 open streams (TOO_MANY_STREAMS)")));
 }
 
 // Each silence takes 0.8 s to 1 s, both together more than the time to give up.
