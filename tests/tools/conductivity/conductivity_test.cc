@@ -14,8 +14,8 @@ const Cluster kBallAndPiston = {{0, 0}, {1, 0}};
 const Cluster kBallAndPistonAlongY = {{0, 0}, {0, 1}};
 
 GalerkinForm PairsOf(const SiteLattice& lattice, int degree) {
-  const ClusterBasis basis(lattice, {kBallAndPiston, kBallAndPistonAlongY}, {.degree = degree});
-  return {lattice, basis, ContactMatrix(lattice.dimensions, degree)};
+  return {lattice,
+          ClusterBasis(lattice, {kBallAndPiston, kBallAndPistonAlongY}, {.degree = degree})};
 }
 
 // Balls and pistons are half a cell apart, so kappa_0 = E/4. Of equal sites it is the exchange
@@ -25,8 +25,7 @@ TEST(Conductivity, StaticConductivityIsHalfTheExchangeRate) {
   EXPECT_NEAR(PairsOf(BallPistonLattice(), 3).field_energy() / 4, kContactRate / 2, 1e-14);
   for (const int dimension : {2, 3}) {
     const SiteLattice chain = EqualSitesChain(dimension);
-    const ClusterBasis basis(chain, ChainClusters(chain, 2), {.degree = 3});
-    const GalerkinForm form(chain, basis, ContactMatrix(chain.dimensions, 3));
+    const GalerkinForm form(chain, ClusterBasis(chain, Clusters(chain, 2), {.degree = 3}));
     EXPECT_NEAR(form.field_energy(), kContactRate, 1e-14);
   }
 }
