@@ -57,13 +57,28 @@ TEST(Program, APanelWithoutRunsExitsWithOneAndNamesTheFlags) {
   EXPECT_THAT(result.err, HasSubstr("--seconds or a larger --delta"));
 }
 
-TEST(Program, EveryValueThatIsNotPermittedIsNamed) {
-  const ProcessResult result = RunComparison({"--delta=0.4", "--epsilon=-1", "--seconds=0.001"});
-  EXPECT_THAT(result, ExitsWith(2));
-  EXPECT_EQ(result.out, "");
-  for (const char* flag : {"--delta: ", "--epsilon: -1 is not in", "--seconds: 0.001 is not in"}) {
-    EXPECT_THAT(result.err, HasSubstr(std::string("method_comparison: ") + flag));
+TEST(Program, EveryValueThatIsNotPermittedIsNamedWithItsRange) {
+  for (const auto& [flag, values, end] :
+       std::vector<std::tuple<std::string, std::vector<std::string>, std::string>>{
+           {"--rho", {"0.3"}, ""},
+           {"--delta", {"0", "0.4", "nan"}, ""},
+           {"--epsilon", {"0", "0.5", "nan"}, " is not in (0, 1/2)"},
+           {"--seconds", {"0.009", "61", "nan"}, " is not in [0.01, 60]"},
+           {"--relaxation-delta", {"0.1,0.5"}, ""},
+           {"--relaxation-delta",
+            {".1,.1,.1,.1,.1,.1,.1,.1,.1"},
+            "9 values; permitted: at most 8"}}) {
+    for (const std::string& value : values) {
+      const ProcessResult result = RunComparison({flag + "=" + value});
+      EXPECT_THAT(result, ExitsWith(2));
+      EXPECT_EQ(result.out, "");
+      EXPECT_THAT(result.err, StartsWith("method_comparison: " + flag + ": "));
+      EXPECT_THAT(result.err, EndsWith(end + "\n"));
+    }
   }
+  const ProcessResult two = RunComparison({"--rho=0.3", "--epsilon=-1"});
+  EXPECT_THAT(two.err, HasSubstr("--rho: rho is 0.3"));
+  EXPECT_THAT(two.err, HasSubstr("--epsilon: -1 is not in"));
 }
 
 TEST(Program, AnUnknownFlagExitsWithTwoAndHelpWithZero) {
