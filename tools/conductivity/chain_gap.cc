@@ -81,7 +81,7 @@ class ChainGenerator {
  public:
   ChainGenerator(const std::vector<int>& dimensions, int degree) : dimensions_(dimensions) {
     for (size_t site = 0; site + 1 < dimensions.size(); ++site) {
-      contacts_.emplace_back(SiteDimensions{dimensions[site], dimensions[site + 1]}, degree);
+      contacts_.push_back(ContactMatrix({dimensions[site], dimensions[site + 1]}, degree));
     }
     for (int q = 0; q <= degree; ++q) shells_.emplace_back(dimensions.size(), q);
     for (size_t q = 1; q < shells_.size(); ++q) {
@@ -124,18 +124,18 @@ class ChainGenerator {
   void AddRow(size_t q, size_t r, Eigen::Index row, size_t site,
               std::vector<Eigen::Triplet<double>>& elements) const {
     Degrees degrees = shells_[q].products()[static_cast<size_t>(row)];
-    const int before = ContactMatrix::Row(degrees[site], degrees[site + 1]);
+    const int before = ContactRow(degrees[site], degrees[site + 1]);
     const int total = degrees[site] + degrees[site + 1] + static_cast<int>(r) - static_cast<int>(q);
     for (int j = 0; j <= total; ++j) {
       degrees[site] = total - j;
       degrees[site + 1] = j;
       elements.emplace_back(row, shells_[r].Place(degrees),
-                            contacts_[site].elements()(before, ContactMatrix::Row(total - j, j)));
+                            contacts_[site](before, ContactRow(total - j, j)));
     }
   }
 
   std::vector<int> dimensions_;
-  std::vector<ContactMatrix> contacts_;
+  std::vector<Eigen::MatrixXd> contacts_;
   std::vector<Shell> shells_;               // by degree
   std::vector<Eigen::MatrixXd> functions_;  // by degree, from 1
 };

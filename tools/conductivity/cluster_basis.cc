@@ -46,19 +46,18 @@ int TotalDegree(const Monomial& monomial) {
   return sum;
 }
 
-std::vector<Cluster> ChainClusters(const SiteLattice& chain, int length) {
-  std::vector<Cluster> clusters;
-  for (int start = 0; start < chain.period; ++start) {
-    Cluster cluster;
-    for (int k = 0; k < length; ++k) cluster.push_back({static_cast<int16_t>(start + k), 0});
-    clusters.push_back(cluster);
+std::vector<Cluster> Clusters(const SiteLattice& lattice, int extent) {
+  if (lattice.has_rows) {
+    return {Around(lattice, {0, 0}, extent), Around(lattice, {1, 0}, extent),
+            Around(lattice, {0, 1}, extent)};
+  }
+  std::vector<Cluster> clusters(static_cast<size_t>(lattice.period));
+  for (int start = 0; start < lattice.period; ++start) {
+    for (int k = 0; k < extent; ++k) {
+      clusters[static_cast<size_t>(start)].push_back({static_cast<int16_t>(start + k), 0});
+    }
   }
   return clusters;
-}
-
-std::vector<Cluster> LatticeClusters(const SiteLattice& lattice, int radius) {
-  return {Around(lattice, {0, 0}, radius), Around(lattice, {1, 0}, radius),
-          Around(lattice, {0, 1}, radius)};
 }
 
 ClusterBasis::ClusterBasis(const SiteLattice& lattice, const std::vector<Cluster>& clusters,
@@ -73,7 +72,12 @@ ClusterBasis::ClusterBasis(const SiteLattice& lattice, const std::vector<Cluster
 
 // Every continuation of the monomial by sites from `next` on.
 void ClusterBasis::AddAll(const Cluster& cluster, size_t next, Monomial& monomial) {
-  if (!monomial.empty()) Add(monomial);
+  if (!monomial.empty()) {
+    Signed found = Representative(monomial);
+    if (found.sign != 0 && index_.try_emplace(found.monomial, size()).second) {
+      monomials_.push_back(std::move(found.monomial));
+    }
+  }
   if (static_cast<int>(monomial.size()) == limits_.sites) return;
   const int left = limits_.degree - TotalDegree(monomial);
   for (size_t k = next; k < cluster.size(); ++k) {
@@ -85,18 +89,9 @@ void ClusterBasis::AddAll(const Cluster& cluster, size_t next, Monomial& monomia
   }
 }
 
-void ClusterBasis::Add(const Monomial& monomial) {
-  Signed found = Representative(monomial);
-  if (found.sign == 0) return;
-  if (index_.try_emplace(found.monomial, size()).second) {
-    monomials_.push_back(std::move(found.monomial));
-  }
-}
-
 int ClusterBasis::Find(const Monomial& monomial) const {
   if (monomial.empty()) return 0;
   const Signed found = Representative(monomial);
-  if (found.sign == 0) return 0;
   const auto at = index_.find(found.monomial);
   return at == index_.end() ? 0 : found.sign * (at->second + 1);
 }

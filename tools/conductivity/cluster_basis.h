@@ -14,8 +14,8 @@
 #include <absl/container/flat_hash_map.h>
 #include <absl/container/inlined_vector.h>
 
+#include <compare>
 #include <cstdint>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -27,10 +27,7 @@ struct Factor {
   Site site;
   int16_t degree = 0;  // 1 or more
 
-  friend bool operator==(const Factor&, const Factor&) = default;
-  friend bool operator<(const Factor& one, const Factor& other) {
-    return std::tie(one.site, one.degree) < std::tie(other.site, other.degree);
-  }
+  friend auto operator<=>(const Factor&, const Factor&) = default;
   template <typename H>
   friend H AbslHashValue(H state, const Factor& f) {
     return H::combine(std::move(state), f.site.x, f.site.y, f.degree);
@@ -44,11 +41,10 @@ int TotalDegree(const Monomial& monomial);
 // The sites that the functions may depend on, up to translation.
 using Cluster = std::vector<Site>;
 
-// `length` neighbouring sites of a chain.
-std::vector<Cluster> ChainClusters(const SiteLattice& chain, int length);
-// Three clusters: the sites with |x| + |y| up to `radius` from a ball, from a piston that moves
-// along x, and from a piston that moves along y.
-std::vector<Cluster> LatticeClusters(const SiteLattice& lattice, int radius);
+// In a chain: `extent` neighbouring sites. In the lattice three clusters: the sites with |x| + |y|
+// up to `extent` from a ball, from a piston that moves along x, and from a piston that moves along
+// y.
+std::vector<Cluster> Clusters(const SiteLattice& lattice, int extent);
 
 struct BasisLimits {
   int degree;       // total degree
@@ -78,7 +74,6 @@ class ClusterBasis {
   Monomial Reflected(const Monomial& monomial, int x_sign, int y_sign) const;
   Signed Representative(const Monomial& monomial) const;
   void AddAll(const Cluster& cluster, size_t next, Monomial& monomial);
-  void Add(const Monomial& monomial);
 
   bool has_rows_;
   int16_t period_;

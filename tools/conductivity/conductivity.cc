@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/conductivity/contact_matrix.h"
 #include "tools/conductivity/galerkin_form.h"
 #include "tools/conductivity/tail_limit.h"
 
@@ -35,69 +34,53 @@ double SolvedForm(const GalerkinForm& form) {
   return form.field().dot(solution);
 }
 
-std::vector<Cluster> Clusters(const SiteLattice& lattice, int extent) {
-  return lattice.has_rows ? LatticeClusters(lattice, extent) : ChainClusters(lattice, extent);
-}
-
 // The bound changes above degree n by an amount that falls as n^-p; returns p.
 double DegreePower(const SiteLattice& lattice) {
   return 2 + std::min(lattice.dimensions.a, lattice.dimensions.b);
 }
 
-class Refinement {
- public:
-  explicit Refinement(const SiteLattice& lattice) : lattice_(lattice) {}
-
-  // The amount by which a step changes the correction.
-  BoundedValue Added(const RefinementStep& step) {
-    std::vector<double> degrees, differences;
-    for (const int degree : step.degrees) {
-      degrees.push_back(degree);
-      differences.push_back(Bound(step.to, degree) - Bound(step.from, degree));
-    }
-    if (degrees.size() == 1) return {differences[0], std::abs(differences[0]) / 10};
-    return TailLimit(degrees, differences, DegreePower(lattice_));
+// Each bound of the table is computed once.
+double Bound(const SiteLattice& lattice, ClusterSize size, int degree,
+             std::vector<ComputedBound>& table) {
+  if (size.extent == 0) return 0;
+  for (const ComputedBound& row : table) {
+    if (row.size == size && row.degree == degree) return row.correction;
   }
+  table.push_back({size, degree, ConductivityBound(lattice, size, degree)});
+  return table.back().correction;
+}
 
-  const std::vector<ComputedBound>& table() const { return table_; }
-
- private:
-  // Each bound is computed once.
-  double Bound(ClusterSize size, int degree) {
-    if (size.extent == 0) return 0;
-    const auto known = std::find_if(table_.begin(), table_.end(), [&](const ComputedBound& row) {
-      return row.size == size && row.degree == degree;
-    });
-    if (known != table_.end()) return known->correction;
-    table_.push_back({size, degree, ConductivityBound(lattice_, size, degree)});
-    return table_.back().correction;
+// The amount by which a step changes the correction.
+BoundedValue Added(const SiteLattice& lattice, const RefinementStep& step,
+                   std::vector<ComputedBound>& table) {
+  std::vector<double> degrees, differences;
+  for (const int degree : step.degrees) {
+    degrees.push_back(degree);
+    differences.push_back(Bound(lattice, step.to, degree, table) -
+                          Bound(lattice, step.from, degree, table));
   }
-
-  SiteLattice lattice_;
-  std::vector<ComputedBound> table_;
-};
+  return TailLimit(degrees, differences, DegreePower(lattice));
+}
 
 }  // namespace
 
 double ConductivityBound(const SiteLattice& lattice, ClusterSize size, int degree) {
   const ClusterBasis basis(lattice, Clusters(lattice, size.extent), {degree, size.sites});
-  const GalerkinForm form(lattice, basis, ContactMatrix(lattice.dimensions, degree));
+  const GalerkinForm form(lattice, basis);
   return -SolvedForm(form) / form.field_energy();
 }
 
 ConductivityRatio RefineConductivity(const SiteLattice& lattice, const RefinementPlan& plan) {
-  Refinement refinement(lattice);
   ConductivityRatio ratio = {};
   double last = 0;
   for (const RefinementStep& step : plan.steps) {
-    const BoundedValue added = refinement.Added(step);
+    const BoundedValue added = Added(lattice, step, ratio.table);
     ratio.correction += added.value;
     ratio.error += added.error;
     last = added.value;
   }
   ratio.correction += plan.beyond * last;
   ratio.error += plan.beyond * std::abs(last) / 2;
-  ratio.table = refinement.table();
   for (const ComputedBound& row : ratio.table) {
     ratio.upper_bound = std::min(ratio.upper_bound, row.correction);
   }

@@ -50,7 +50,7 @@ double ConductivityBound(const SiteLattice& lattice, ClusterSize size, int degre
 struct RefinementStep {
   ClusterSize from;
   ClusterSize to;
-  std::vector<int> degrees;
+  std::vector<int> degrees;  // two or more, ascending
 };
 
 struct RefinementPlan {

@@ -22,10 +22,10 @@ namespace {
 Eigen::VectorXd PairProducts(SiteDimensions dimensions, int degree, double ea, double eb) {
   const Eigen::VectorXd a = GammaPolynomials(dimensions.a / 2.0, degree, ea);
   const Eigen::VectorXd b = GammaPolynomials(dimensions.b / 2.0, degree, eb);
-  Eigen::VectorXd products(ContactMatrix::Rows(degree));
+  Eigen::VectorXd products(ContactRows(degree));
   for (int total = 0; total <= degree; ++total) {
     for (int j = 0; j <= total; ++j) {
-      products[ContactMatrix::Row(total - j, j)] = a[total - j] * b[j];
+      products[ContactRow(total - j, j)] = a[total - j] * b[j];
     }
   }
   return products;
@@ -42,7 +42,7 @@ Eigen::MatrixXd Differences(SiteDimensions dimensions, int degree, double t, dou
   const GammaQuadrature ga = OtherComponents(dimensions.a, degree);
   const GammaQuadrature gb = OtherComponents(dimensions.b, degree);
   const double middle = (t + y) / 2, r = std::sqrt(t * y);
-  Eigen::MatrixXd columns(ContactMatrix::Rows(degree), ga.nodes.size() * gb.nodes.size());
+  Eigen::MatrixXd columns(ContactRows(degree), ga.nodes.size() * gb.nodes.size());
   Eigen::Index column = 0;
   for (Eigen::Index i = 0; i < ga.nodes.size(); ++i) {
     for (Eigen::Index j = 0; j < gb.nodes.size(); ++j, ++column) {
@@ -57,10 +57,9 @@ Eigen::MatrixXd Differences(SiteDimensions dimensions, int degree, double t, dou
 
 }  // namespace
 
-ContactMatrix::ContactMatrix(SiteDimensions dimensions, int degree)
-    : dimensions_(dimensions), degree_(degree) {
+Eigen::MatrixXd ContactMatrix(SiteDimensions dimensions, int degree) {
   const GammaQuadrature t = GammaNodes(2, degree), y = GammaNodes(1.5, degree);
-  Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(Rows(degree), Rows(degree));
+  Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(ContactRows(degree), ContactRows(degree));
   for (int i = 0; i < degree; ++i) {
     for (int j = 0; j < degree; ++j) {
       lower.selfadjointView<Eigen::Lower>().rankUpdate(
@@ -68,7 +67,7 @@ ContactMatrix::ContactMatrix(SiteDimensions dimensions, int degree)
           kContactRate / 4 * t.weights[i] * y.weights[j]);
     }
   }
-  elements_ = lower.selfadjointView<Eigen::Lower>();
+  return lower.selfadjointView<Eigen::Lower>();
 }
 
 }  // namespace ballpiston

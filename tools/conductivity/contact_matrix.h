@@ -16,8 +16,6 @@
 //   1. HighDegreesAreExactToRounding.
 // Results from this matrix agree with markov/generator.h (chain_gap.h) and with a published value
 // (conductivity.h).
-//
-// Immutable; safe to share between threads.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,24 +33,12 @@ struct SiteDimensions {
   int b;
 };
 
-class ContactMatrix {
- public:
-  // All products of a total degree up to `degree`.
-  ContactMatrix(SiteDimensions dimensions, int degree);
+// The row of p_i(e_a) p_j(e_b). Products of a lower total degree come first.
+inline int ContactRow(int i, int j) { return (i + j) * (i + j + 1) / 2 + j; }
+// The number of products of a total degree up to `degree`.
+inline int ContactRows(int degree) { return ContactRow(degree + 1, 0); }
 
-  // The row of p_i(e_a) p_j(e_b). Products of a lower total degree come first.
-  static int Row(int i, int j) { return (i + j) * (i + j + 1) / 2 + j; }
-  // Products of a total degree up to `degree`.
-  static int Rows(int degree) { return Row(degree + 1, 0); }
-
-  SiteDimensions dimensions() const { return dimensions_; }
-  int degree() const { return degree_; }
-  const Eigen::MatrixXd& elements() const { return elements_; }
-
- private:
-  SiteDimensions dimensions_;
-  int degree_;
-  Eigen::MatrixXd elements_;
-};
+// All products of a total degree up to `degree`.
+Eigen::MatrixXd ContactMatrix(SiteDimensions dimensions, int degree);
 
 }  // namespace ballpiston

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+
+#include "tools/conductivity/contact_matrix.h"
 
 namespace ballpiston {
 namespace {
@@ -62,8 +63,11 @@ Monomial WithPair(const Monomial& rest, const SiteContact& contact, int i, int j
 }
 
 // Row 0 is that of p_1(e_a), because the constant has no row.
-int RowOf(int i, int j) { return ContactMatrix::Row(i, j) - 1; }
-Eigen::Index RowsOf(size_t degree) { return ContactMatrix::Rows(static_cast<int>(degree)) - 1; }
+Eigen::MatrixXd WithoutConstant(const Eigen::MatrixXd& contact) {
+  return contact.bottomRightCorner(contact.rows() - 1, contact.cols() - 1);
+}
+int RowOf(int i, int j) { return ContactRow(i, j) - 1; }
+Eigen::Index RowsOf(size_t degree) { return ContactRows(static_cast<int>(degree)) - 1; }
 
 Eigen::MatrixXi PlacesOf(const std::vector<Monomial>& environments, size_t degree,
                          const SiteContact& contact, const ClusterBasis& basis) {
@@ -99,20 +103,19 @@ constexpr Eigen::Index kColumnsAtOnce = 256;
 
 }  // namespace
 
-GalerkinForm::GalerkinForm(const SiteLattice& lattice, const ClusterBasis& basis,
-                           const ContactMatrix& contact)
-    : contact_(contact.elements().bottomRightCorner(contact.elements().rows() - 1,
-                                                    contact.elements().cols() - 1)),
+GalerkinForm::GalerkinForm(const SiteLattice& lattice, const ClusterBasis& basis)
+    : contact_(WithoutConstant(ContactMatrix(lattice.dimensions, basis.limits().degree))),
       scales_(Eigen::VectorXd::Zero(basis.size())),
       field_(Eigen::VectorXd::Zero(basis.size())) {
   for (const SiteContact& c : lattice.contacts) {
     const std::vector<std::vector<Monomial>> environments = AllEnvironments(lattice, c, basis);
     for (size_t degree = 1; degree < environments.size(); ++degree) {
-      blocks_.push_back(
-          {PlacesOf(environments[degree], degree, c, basis), static_cast<double>(c.copies)});
-      AddScales(blocks_.back());
+      const Eigen::MatrixXi places = PlacesOf(environments[degree], degree, c, basis);
+      const Eigen::VectorXd diagonal = c.copies * contact_.diagonal().head(places.rows());
+      Scatter(diagonal.replicate(1, places.cols()), places.cwiseAbs(), scales_);
+      blocks_.push_back({places, static_cast<double>(c.copies)});
     }
-    AddField(c, basis, contact.dimensions());
+    AddField(c, basis, lattice.dimensions);
   }
 }
 
@@ -126,15 +129,6 @@ void GalerkinForm::AddField(const SiteContact& contact, const ClusterBasis& basi
   const Eigen::VectorXd coupling = contact_.col(RowOf(1, 0)).head(places.rows());
   Scatter(contact.copies * slope * coupling, places, field_);
   field_energy_ += contact.copies * slope * slope * contact_(RowOf(1, 0), RowOf(1, 0));
-}
-
-void GalerkinForm::AddScales(const Blocks& blocks) {
-  for (Eigen::Index column = 0; column < blocks.places.cols(); ++column) {
-    for (Eigen::Index row = 0; row < blocks.places.rows(); ++row) {
-      const int place = std::abs(blocks.places(row, column));
-      if (place > 0) scales_[place - 1] += blocks.copies * contact_(row, row);
-    }
-  }
 }
 
 Eigen::VectorXd GalerkinForm::Apply(const Eigen::VectorXd& v) const {

@@ -21,15 +21,13 @@
 #include <vector>
 
 #include "tools/conductivity/cluster_basis.h"
-#include "tools/conductivity/contact_matrix.h"
 #include "tools/conductivity/site_lattice.h"
 
 namespace ballpiston {
 
 class GalerkinForm {
  public:
-  // `contact` has the lattice's dimensions, and at least the degree of the basis.
-  GalerkinForm(const SiteLattice& lattice, const ClusterBasis& basis, const ContactMatrix& contact);
+  GalerkinForm(const SiteLattice& lattice, const ClusterBasis& basis);
 
   // A v.
   Eigen::VectorXd Apply(const Eigen::VectorXd& v) const;
@@ -46,7 +44,6 @@ class GalerkinForm {
     double copies;
   };
   void AddField(const SiteContact& contact, const ClusterBasis& basis, SiteDimensions dimensions);
-  void AddScales(const Blocks& blocks);
 
   Eigen::MatrixXd contact_;  // without the constant's row and column
   std::vector<Blocks> blocks_;

@@ -5,8 +5,8 @@
 // sites a cell has length 1.
 #pragma once
 
+#include <compare>
 #include <cstdint>
-#include <tuple>
 #include <vector>
 
 #include "tools/conductivity/contact_matrix.h"
@@ -17,10 +17,7 @@ struct Site {
   int16_t x = 0;
   int16_t y = 0;
 
-  friend bool operator==(const Site&, const Site&) = default;
-  friend bool operator<(Site one, Site other) {
-    return std::tie(one.x, one.y) < std::tie(other.x, other.y);
-  }
+  friend auto operator<=>(const Site&, const Site&) = default;
 };
 
 // A contact of one cell. All other contacts follow by translation and by reflection of x and of y.

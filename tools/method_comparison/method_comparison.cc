@@ -15,6 +15,7 @@
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/expected_returns.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/markov/relaxation_spectrum.h"
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/stated_error.h"
 #include "server/processor_time.h"
@@ -77,10 +78,15 @@ class Comparison {
     CompareReturns(Quantity::kMeanFreeTime);
     CompareReturns(Quantity::kIngoingLaw);
     CompareTrajectories();
+    RelaxationSpectrum::Get();  // first, so that no run computes the spectrum
     for (const double delta : spec_.relaxation_deltas) {
-      CompareRelaxationTimesOf({PairGeometry::Create(spec_.rho, delta).value(), spec_.seed});
+      CompareWithTruth(Quantity::kRelaxationTime, delta, kFewestTruthOrbits, kFewestRelaxations,
+                       {kLanes, kMarkov, kSpectrum},
+                       RelaxationRuns(PairGeometry::Create(spec_.rho, delta).value(), spec_.seed));
     }
-    CompareHeatCurrents({spec_.rho, GasDelta(spec_.rho), spec_.seed});
+    const double delta = GasDelta(spec_.rho);
+    CompareWithTruth(Quantity::kHeatCurrent, delta, kFewestTruthStretches, kFewestStretches,
+                     GasMethods(), HeatCurrentRuns(spec_.rho, delta, spec_.seed));
   }
 
  private:
@@ -213,34 +219,33 @@ class Comparison {
             .own_error = error};
   }
 
-  void CompareRelaxationTimesOf(const EnergyRelaxationRuns& runs) {
-    const uint64_t orbits = SamplesOfTruth(runs.PredictedSecondsPerOrbit());
-    if (orbits < kFewestTruthOrbits) return;
-    const PointEstimate limit = runs.BySpectrum();  // first, so that no run computes the spectrum
-    const Subject subject = {Quantity::kRelaxationTime, runs.geometry.delta(), runs.Truth(orbits)};
-    const auto climb = [&](const Method& method) {
-      Climb(kFewestRelaxations, 0, [&](size_t, uint64_t samples) {
-        return Compared(subject, method, runs.Run(method, samples));
-      });
-    };
-    climb(kLanes);
-    climb(kMarkov);
-    Tell(Compared(subject, kSpectrum, limit));
-  }
-
-  void CompareHeatCurrents(const HeatCurrentRuns& runs) {
-    const uint64_t stretches = SamplesOfTruth(runs.PredictedSecondsPerSample(kLanes));
-    if (stretches < kFewestTruthStretches) return;
-    const Subject subject = {Quantity::kHeatCurrent, runs.delta, runs.Truth(stretches)};
-    for (const Method& method : GasMethods()) {
+  // Compares methods with a truth of at least `fewest_of_truth` samples. The truth's time is long
+  // enough for the first run of any engine, which has `fewest` samples.
+  void CompareWithTruth(Quantity quantity, double delta, uint64_t fewest_of_truth, uint64_t fewest,
+                        const std::vector<Method>& methods, const PointRuns& runs) const {
+    const uint64_t of_truth = SamplesOfTruth(runs.PredictedSecondsPerSample(kLanes));
+    if (of_truth < fewest_of_truth) return;
+    const PointEstimate truth = runs.Truth(of_truth);
+    for (const Method& method : methods) {
       const auto run = [&](size_t, uint64_t samples) {
-        return Compared(subject, method, runs.Run(method, samples));
+        const PointEstimate measured = runs.Run(method, samples);
+        const double ratio = measured.value / truth.value;
+        return MethodMeasurement{
+            .method = method,
+            .quantity = quantity,
+            .delta = delta,
+            .samples = measured.error == 0 ? 0 : measured.samples,  // nearly all were lost
+            .work = measured.seconds,
+            .value = std::fabs(ratio - 1),
+            .statistical_error = std::hypot(measured.error, ratio * truth.error) / truth.value,
+            .own_error = measured.error / truth.value};
       };
-      if (method.time_step > 0) {
+      if (method == kSpectrum) {
+        Tell(run(0, 0));
+      } else if (method.time_step > 0) {
         Climb(kFewestOrbits, runs.PredictedSecondsPerSample(method) * kFewestOrbits, run);
       } else {
-        // The truth's time is long enough for the smallest number of stretches of any engine.
-        Climb(kFewestStretches, 0, run);
+        Climb(fewest, 0, run);
       }
     }
   }
@@ -250,27 +255,6 @@ class Comparison {
   uint64_t SamplesOfTruth(double seconds_per_sample) const {
     const double samples = kTruthTimes * spec_.seconds_per_curve / seconds_per_sample;
     return std::bit_floor(static_cast<uint64_t>(std::numbers::sqrt2 * samples));
-  }
-
-  // A quantity that is compared with a truth.
-  struct Subject {
-    Quantity quantity;
-    double delta;
-    PointEstimate truth;
-  };
-
-  static MethodMeasurement Compared(const Subject& subject, const Method& method,
-                                    const PointEstimate& measured) {
-    const PointEstimate& truth = subject.truth;
-    const double ratio = measured.value / truth.value;
-    return {.method = method,
-            .quantity = subject.quantity,
-            .delta = subject.delta,
-            .samples = measured.error == 0 ? 0 : measured.samples,  // nearly all were lost
-            .work = measured.seconds,
-            .value = std::fabs(ratio - 1),
-            .statistical_error = std::hypot(measured.error, ratio * truth.error) / truth.value,
-            .own_error = measured.error / truth.value};
   }
 
   const MethodComparisonSpec spec_;

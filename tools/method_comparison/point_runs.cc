@@ -39,62 +39,26 @@ PointEstimate Answered(EnsembleSpec spec, uint64_t samples, bool is_truth) {
 
 // ---- relaxation times ----
 
-EnsembleSpec SpecOf(const PairGeometry& geometry, uint64_t seed, const Method& method) {
-  return {.experiment = &kEnergyRelaxation,
-          .grid = {{kRho, {geometry.rho()}}, {kDelta, {geometry.delta()}}},
-          .seed = seed,
-          .model = method.model};
-}
-
-PointParameters PointOf(const PairGeometry& geometry) {
-  return {{kRho, geometry.rho()}, {kDelta, geometry.delta()}};
-}
-
-}  // namespace
-
-double EnergyRelaxationRuns::PredictedSecondsPerOrbit() const {
+double SecondsPerOrbit(const PairGeometry& geometry, const PointParameters& point) {
   constexpr double kPerEvent = 2e-9, kPerCollision = 4e-7;
-  return CollisionsPerOrbit(PointOf(geometry)) *
+  return CollisionsPerOrbit(point) *
          (kPerCollision + kPerEvent * HitsPerCollision(geometry).Events());
 }
 
-PointEstimate EnergyRelaxationRuns::Run(const Method& method, uint64_t samples) const {
-  return Answered(SpecOf(geometry, seed, method), samples, false);
-}
-
-PointEstimate EnergyRelaxationRuns::Truth(uint64_t samples) const {
-  return Answered(SpecOf(geometry, seed, kLanes), samples, true);
-}
-
-PointEstimate EnergyRelaxationRuns::BySpectrum() const {
-  RelaxationSpectrum::Get();
+PointEstimate BySpectrum(const PairGeometry& geometry, const PointParameters& point) {
   BoundedValue time;
-  const double seconds = server::SecondsOf(
-      [&] { time = EnergyRelaxation(geometry, PointOf(geometry)).IntegralOfLimit(); });
+  const double seconds =
+      server::SecondsOf([&] { time = EnergyRelaxation(geometry, point).IntegralOfLimit(); });
   return {.value = time.value, .error = time.error, .seconds = seconds};
 }
 
 // ---- heat currents ----
-
-namespace {
 
 // A ball between two pistons. At the same work the error grows as the number of cells. With more
 // cells the error would hide the bias of the limit.
 constexpr GasShape kComparedChain = {.columns = 1};
 constexpr double kComparedHot = 1.5;
 constexpr double kComparedCold = 0.5;
-
-// The gas of the experiment gas-conduction.
-EnsembleSpec SpecOf(const HeatCurrentRuns& runs, const Method& method) {
-  return {.experiment = &kGasConduction,
-          .grid = {{kRho, {runs.rho}},
-                   {kDelta, {runs.delta}},
-                   {kCells, {CodeOf(kComparedChain)}},
-                   {kHot, {kComparedHot}},
-                   {kCold, {kComparedCold}}},
-          .seed = runs.seed,
-          .model = method.model};
-}
 
 const SteadyGas& AsGas(const PointExperiment& experiment) {
   return static_cast<const SteadyGas&>(experiment);
@@ -105,17 +69,6 @@ const SteadyGas& AsGas(const PointExperiment& experiment) {
 double TimeToRelax(const SteadyGas& gas) { return 8 * gas.stretch(); }
 double TimeToTheEnd(const SteadyGas& gas) { return 32 * gas.stretch(); }
 
-GasState StartOf(const SteadyGas& gas, const GasRandom& random) {
-  CounterRandom of_start = random.OfStart();
-  return DrawGas(gas.geometry(), gas.TemperaturesAtStart(), of_start);
-}
-
-// The mean temperature is 1, so the current is not scaled.
-static_assert(kComparedHot + kComparedCold == 2);
-void Add(const SteadyGas& gas, const GasMeter& meter, BatchMeans& means) {
-  means.Add(meter.carried(), 2 * static_cast<double>(gas.geometry().balls()) * meter.duration());
-}
-
 // Stops earlier if a ball is lost.
 void AdvanceTo(double time, FixedStepGas& gas, GasMeter& meter) {
   while (meter.escapes() == 0 && gas.NextTime() <= time) meter.See(gas.Step());
@@ -123,14 +76,18 @@ void AdvanceTo(double time, FixedStepGas& gas, GasMeter& meter) {
 
 void MeasureReplica(const SteadyGas& gas, double time_step, uint64_t sample, BatchMeans& means) {
   const GasRandom random = gas.RandomOf(sample);
-  const GasState start = StartOf(gas, random);
+  CounterRandom of_start = random.OfStart();
+  const GasState start = DrawGas(gas.geometry(), gas.TemperaturesAtStart(), of_start);
   GasMeter meter(gas.geometry(), start);
   FixedStepGas steps(gas.geometry(), start, gas.WallsOf(random), time_step);
   AdvanceTo(TimeToRelax(gas), steps, meter);
   meter.Begin(TimeToRelax(gas));
   AdvanceTo(TimeToTheEnd(gas), steps, meter);
   meter.End(TimeToTheEnd(gas));
-  if (meter.escapes() == 0) Add(gas, meter, means);
+  if (meter.escapes() > 0) return;
+  // The mean temperature is 1, so the current is not scaled.
+  static_assert(kComparedHot + kComparedCold == 2);
+  means.Add(meter.carried(), 2 * static_cast<double>(gas.geometry().balls()) * meter.duration());
 }
 
 PointEstimate ByFixedSteps(const SteadyGas& gas, double time_step, uint64_t replicas) {
@@ -143,31 +100,59 @@ PointEstimate ByFixedSteps(const SteadyGas& gas, double time_step, uint64_t repl
           .seconds = server::ThreadSeconds() - begin};
 }
 
-}  // namespace
-
-double HeatCurrentRuns::PredictedSecondsPerSample(const Method& method) const {
+double SecondsPerSample(const Method& method, const SteadyGas& gas) {
   constexpr double kPerStep = 4e-8, kPerHit = 1e-9, kPerEvent = 5e-8, kPerExchange = 4e-7,
                    kPerJump = 4e-8;
-  const auto experiment = PointExperiment::Create(SpecOf(*this, method), 0);
-  const SteadyGas& gas = AsGas(*experiment);
-  if (method.time_step > 0) {
-    return kPerStep * TimeToTheEnd(gas) / method.time_step;
-  }
+  if (method.time_step > 0) return kPerStep * TimeToTheEnd(gas) / method.time_step;
   const SampleWork work = WorkOfReplica(method.model, gas.geometry(), gas.stretch());
   if (method.model == Model::kBilliardReference) return kPerEvent * work.Events();
   return kPerHit * work.ball_wall + kPerExchange * work.collisions + kPerJump * work.jumps;
 }
 
-PointEstimate HeatCurrentRuns::Run(const Method& method, uint64_t samples) const {
-  EnsembleSpec spec = SpecOf(*this, method);
-  if (method.time_step == 0) return Answered(spec, samples, false);
-  spec.seed += samples;
-  const auto experiment = PointExperiment::Create(spec, 0);
-  return ByFixedSteps(AsGas(*experiment), method.time_step, samples);
+EnsembleSpec By(const Method& method, EnsembleSpec spec) {
+  spec.model = method.model;
+  return spec;
 }
 
-PointEstimate HeatCurrentRuns::Truth(uint64_t samples) const {
-  return Answered(SpecOf(*this, kLanes), samples, true);
+PairGeometry GeometryOf(const EnsembleSpec& spec) {
+  return *PairGeometry::Create(spec.grid[kRho].front(), spec.grid[kDelta].front());
+}
+
+}  // namespace
+
+double PointRuns::PredictedSecondsPerSample(const Method& method) const {
+  if (spec.experiment == &kEnergyRelaxation) {
+    return SecondsPerOrbit(GeometryOf(spec), PointAt(spec, 0));
+  }
+  return SecondsPerSample(method, AsGas(*PointExperiment::Create(By(method, spec), 0)));
+}
+
+PointEstimate PointRuns::Run(const Method& method, uint64_t samples) const {
+  if (method == kSpectrum) return BySpectrum(GeometryOf(spec), PointAt(spec, 0));
+  EnsembleSpec run = By(method, spec);
+  if (method.time_step == 0) return Answered(run, samples, false);
+  run.seed += samples;
+  return ByFixedSteps(AsGas(*PointExperiment::Create(run, 0)), method.time_step, samples);
+}
+
+PointEstimate PointRuns::Truth(uint64_t samples) const {
+  return Answered(By(kLanes, spec), samples, true);
+}
+
+PointRuns RelaxationRuns(const PairGeometry& geometry, uint64_t seed) {
+  return {{.experiment = &kEnergyRelaxation,
+           .grid = {{kRho, {geometry.rho()}}, {kDelta, {geometry.delta()}}},
+           .seed = seed}};
+}
+
+PointRuns HeatCurrentRuns(double rho, double delta, uint64_t seed) {
+  return {{.experiment = &kGasConduction,
+           .grid = {{kRho, {rho}},
+                    {kDelta, {delta}},
+                    {kCells, {CodeOf(kComparedChain)}},
+                    {kHot, {kComparedHot}},
+                    {kCold, {kComparedCold}}},
+           .seed = seed}};
 }
 
 }  // namespace ballpiston::method_comparison

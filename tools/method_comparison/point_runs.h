@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "core/ensemble/ensemble_spec.h"
 #include "core/geometry/pair_geometry.h"
 #include "tools/method_comparison/method.h"
 
@@ -19,52 +20,36 @@ struct PointEstimate {
   double seconds = 0;    // of processor time
 };
 
-// Measures the relaxation time of the piston's energy in equilibrium, and its cost, by the billiard
-// and by the limit of rare collisions (experiment/energy_relaxation.h).
-//
-// A sample is an orbit.
-struct EnergyRelaxationRuns {
-  PairGeometry geometry;
-  uint64_t seed;
+// Measures a point of an experiment, and the cost of a sample, by the methods that can run it.
+struct PointRuns {
+  EnsembleSpec spec;  // one point; without model and samples
 
-  // Predicted seconds of one orbit of the billiard in lanes, on a processor of about 3 GHz, within
-  // a factor of three.
-  double PredictedSecondsPerOrbit() const;
+  // On a processor of about 3 GHz, within a factor of three. Not for kSpectrum.
+  double PredictedSecondsPerSample(const Method& method) const;
 
-  // Runs kLanes or kMarkov. Escaped orbits are not counted.
+  // By the spectrum: without samples; `error` is the bound of its error, and `seconds` the time of
+  // one evaluation. The computation of the spectrum (about 0.1 s), which is done once for all
+  // geometries, counts if it is the first one.
   PointEstimate Run(const Method& method, uint64_t samples) const;
 
   // By kLanes; with other samples than a run.
   PointEstimate Truth(uint64_t samples) const;
-
-  // The relaxation time of the limit, with the bound of its error. `seconds` is the time of one
-  // evaluation, without the computation of the spectrum (about 0.1 s), which is done once for all
-  // geometries.
-  PointEstimate BySpectrum() const;
 };
 
-// Measures the heat current of one cell between two reservoirs, and its cost, by the methods that
-// can run a gas. The gas is that of experiment/gas_conduction.cc, where a sample is a measured
-// stretch of half a relaxation time, and all trajectories warm up before their first stretch.
+// The relaxation time of the piston's energy in equilibrium (experiment/energy_relaxation.h), by
+// kLanes, and in the limit of rare collisions by kMarkov and kSpectrum. A sample is an orbit;
+// escaped orbits are not counted.
+PointRuns RelaxationRuns(const PairGeometry& geometry, uint64_t seed);
+
+// The heat current of one cell between two reservoirs, by FixedSteps, kReference, kLanes and
+// kMarkov; delta must be valid for a gas. The gas is that of experiment/gas_conduction.cc, where a
+// sample is a measured stretch of half a relaxation time, and all trajectories warm up before their
+// first stretch. Stretches are rounded up to a multiple of 128.
 //
 // The service has no fixed time steps. Their sample is a replica, which starts near local
 // equilibrium, relaxes for four relaxation times, and is measured for twelve. A replica that loses
 // a ball is not counted. The jump process has the current of the limit, not of the billiard.
 // Property, with a test of its name: 1. AllMethodsAgree, within their errors and biases.
-struct HeatCurrentRuns {
-  double rho;
-  double delta;  // valid for a gas
-  uint64_t seed;
-
-  // For FixedSteps, kReference, kLanes and kMarkov, on a processor of about 3 GHz, within a factor
-  // of three.
-  double PredictedSecondsPerSample(const Method& method) const;
-
-  // Runs one of these methods. Stretches are rounded up to a multiple of 128.
-  PointEstimate Run(const Method& method, uint64_t samples) const;
-
-  // By kLanes; with other samples than a run.
-  PointEstimate Truth(uint64_t samples) const;
-};
+PointRuns HeatCurrentRuns(double rho, double delta, uint64_t seed);
 
 }  // namespace ballpiston::method_comparison

@@ -26,7 +26,10 @@ class CountedReturns : public NumberedOrbits {
   void AddTo(ReturnStatistics& statistics) {
     statistics.wall_hits += wall_hits_;
     for (uint64_t i = 0; i < returns_.count(); ++i) {
-      if (returns_[i].hit) statistics.Add(*returns_[i].hit);
+      const std::optional<Return>& hit = returns_[i].hit;
+      if (!hit) continue;
+      statistics.times.Add(hit->time);
+      CountIngoing(*hit, statistics.ingoing);
     }
   }
 
@@ -44,11 +47,6 @@ std::vector<double> IngoingProbabilities(double epsilon) {
     probabilities.insert(probabilities.end(), bins.begin(), bins.end());
   }
   return probabilities;
-}
-
-void ReturnStatistics::Add(const Return& hit) {
-  times.Add(hit.time);
-  CountIngoing(hit, ingoing);
 }
 
 std::vector<uint64_t> ReturnStatistics::IngoingCounts() const {

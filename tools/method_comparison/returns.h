@@ -24,7 +24,6 @@ struct ReturnStatistics {
   uint64_t wall_hits = 0;          // of the ball
   double seconds = 0;              // of processor time
 
-  void Add(const Return& hit);
   // In the order of IngoingProbabilities.
   std::vector<uint64_t> IngoingCounts() const;
 };

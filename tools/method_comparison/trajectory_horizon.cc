@@ -35,22 +35,18 @@ std::optional<uint64_t> HitsTogether(const std::vector<BallAt>& places, uint64_t
   return std::nullopt;
 }
 
-// The horizons; empty if an orbit is with its twin to the end. At the largest number of hits this
-// number counts as the horizon of such an orbit.
-std::optional<Moments> Horizons(const Itineraries& itineraries, uint64_t hits, TwinOrbits& twins) {
-  Moments moments;
+// Empty if an orbit is with its twin to the end. At the largest number of hits this number counts
+// as the horizon of such an orbit.
+std::optional<TrajectoryHorizon> HorizonWithin(uint64_t hits, const Itineraries& itineraries,
+                                               TwinOrbits& twins) {
+  TrajectoryHorizon horizon = {.seconds = itineraries.seconds};
   for (size_t i = 0; i < itineraries.orbits.size(); ++i) {
     const std::optional<uint64_t> together = HitsTogether(itineraries.orbits[i], hits, i, twins);
     if (!together && hits < kMostHits) return std::nullopt;
-    moments.Add(static_cast<double>(together.value_or(hits)));
+    horizon.hits.Add(static_cast<double>(together.value_or(hits)));
+    horizon.wall_hits += itineraries.orbits[i].size();
   }
-  return moments;
-}
-
-uint64_t HitsIn(const Itineraries& itineraries) {
-  uint64_t hits = 0;
-  for (const std::vector<BallAt>& places : itineraries.orbits) hits += places.size();
-  return hits;
+  return horizon;
 }
 
 }  // namespace
@@ -89,9 +85,9 @@ std::optional<Eigen::Vector2d> TwinOrbits::PositionAt(size_t orbit, double time)
 
 TrajectoryHorizon HorizonOf(const Method& method, const PairGeometry& geometry, TwinOrbits& twins) {
   for (uint64_t hits = 16;; hits *= 2) {
-    const Itineraries itineraries = method.fly(geometry, twins, hits, method.time_step);
-    const std::optional<Moments> horizons = Horizons(itineraries, hits, twins);
-    if (horizons) return {*horizons, HitsIn(itineraries), itineraries.seconds};
+    const auto horizon =
+        HorizonWithin(hits, method.fly(geometry, twins, hits, method.time_step), twins);
+    if (horizon) return *horizon;
   }
 }
 

@@ -76,7 +76,7 @@ struct Itineraries {
 inline constexpr uint64_t kMostHits = 128;
 
 struct TrajectoryHorizon {
-  Moments hits;            // per orbit, until the orbit and its twin are kParted apart
+  Moments hits = {};       // per orbit, until the orbit and its twin are kParted apart
   uint64_t wall_hits = 0;  // computed in `seconds`, also those after the parting
   double seconds = 0;      // of processor time, without the time of the twins
 };

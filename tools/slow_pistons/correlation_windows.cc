@@ -24,41 +24,46 @@ constexpr double kOrigins = kWindows.back();  // mean free times
 constexpr uint64_t kOrbitsOfABlock = 16384;
 constexpr double kJumpUnits = 4;  // |G|/|dG_bp| of a mean free time
 
+struct OrbitIntegrals {
+  std::array<double, kWindows.size()> all = {};
+  std::array<double, kWindows.size()> idle = {};
+
+  double Met(size_t i) const { return all[i] - idle[i]; }
+};
+
 // The piston's energy along an orbit, in mean free times.
 class EnergyPath {
  public:
-  explicit EnergyPath(double energy) : energy_(energy) { Begin(0, energy); }
+  explicit EnergyPath(double energy) : path_(energy), energy_(energy) {}
 
   void Add(double duration, double energy) {
-    energy_.Add(duration, energy);
-    Begin(energy_.last_jump(), energy);
+    const double begin = end();
+    path_.Add(duration, energy);
+    if (begin < kOrigins) AddIdle(end() - begin, std::max(end() - kOrigins, 0.0));
+    energy_ = energy;
   }
-  double end() const { return energy_.last_jump(); }
+  double end() const { return path_.last_jump(); }
 
-  double All(double window) const {
-    return energy_.CorrelationIntegral(kMeanPistonEnergy, kOrigins, window) /
-           kVarianceOfPistonEnergy;
-  }
-
-  // A time origin in a piece counts the rest of the piece, or the window if that is shorter.
-  double Idle(double window) const {
-    double sum = 0;
-    for (size_t i = 0; i + 1 < pieces_.size() && pieces_[i].begin < kOrigins; ++i) {
-      const double longest = pieces_[i + 1].begin - pieces_[i].begin;
-      const double shortest = std::max(pieces_[i + 1].begin - kOrigins, 0.0);
-      sum += std::pow(pieces_[i].energy - kMeanPistonEnergy, 2) *
-             (IntegralOfRest(longest, window) - IntegralOfRest(shortest, window));
+  OrbitIntegrals Integrals() const {
+    OrbitIntegrals integrals;
+    for (size_t i = 0; i < kWindows.size(); ++i) {
+      integrals.all[i] = path_.CorrelationIntegral(kMeanPistonEnergy, kOrigins, kWindows[i]) /
+                         kVarianceOfPistonEnergy;
+      integrals.idle[i] = idle_[i] / kOrigins / kVarianceOfPistonEnergy;
     }
-    return sum / kOrigins / kVarianceOfPistonEnergy;
+    return integrals;
   }
 
  private:
-  struct Piece {
-    double begin;
-    double energy;
-  };
-
-  void Begin(double time, double energy) { pieces_.push_back({time, energy}); }
+  // Adds a piece. A time origin in it counts the rest of the piece, or the window if that is
+  // shorter.
+  void AddIdle(double longest_rest, double shortest_rest) {
+    for (size_t i = 0; i < kWindows.size(); ++i) {
+      idle_[i] +=
+          std::pow(energy_ - kMeanPistonEnergy, 2) *
+          (IntegralOfRest(longest_rest, kWindows[i]) - IntegralOfRest(shortest_rest, kWindows[i]));
+    }
+  }
 
   // int_0^rest min(x, window) dx.
   static double IntegralOfRest(double rest, double window) {
@@ -66,15 +71,9 @@ class EnergyPath {
     return below * below / 2 + window * (rest - below);
   }
 
-  StepFunction energy_;
-  std::vector<Piece> pieces_;
-};
-
-struct OrbitIntegrals {
-  std::array<double, kWindows.size()> all = {};
-  std::array<double, kWindows.size()> idle = {};
-
-  double Met(size_t i) const { return all[i] - idle[i]; }
+  StepFunction path_;
+  double energy_;  // after the last jump
+  std::array<double, kWindows.size()> idle_ = {};
 };
 
 class WindowedOrbits : public NumberedOrbits {
@@ -106,7 +105,7 @@ class WindowedOrbits : public NumberedOrbits {
     } else {
       path->Add(TimeLimit() / mean_free_time_, 0);
     }
-    Measure(*path, integrals_[orbit]);
+    integrals_[orbit] = path->Integrals();
     path.reset();
     return AfterCollision::kEnd;
   }
@@ -116,13 +115,6 @@ class WindowedOrbits : public NumberedOrbits {
   const std::vector<OrbitIntegrals>& integrals() const { return integrals_; }
 
  private:
-  static void Measure(const EnergyPath& path, OrbitIntegrals& integrals) {
-    for (size_t i = 0; i < kWindows.size(); ++i) {
-      integrals.all[i] = path.All(kWindows[i]);
-      integrals.idle[i] = path.Idle(kWindows[i]);
-    }
-  }
-
   const PairGeometry& geometry_;
   uint64_t seed_;
   uint64_t first_;

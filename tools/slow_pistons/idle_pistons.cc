@@ -22,6 +22,8 @@ ReferenceGas StartOf(const GasGeometry& geometry, const SteadyChain& chain) {
 
 class IdlePiston {
  public:
+  explicit IdlePiston(double energy = -1, double since = 0) : energy_(energy), since_(since) {}
+
   // An exchange is an event after which the piston has another energy.
   void See(double time, double energy, bool is_with_ball, double crossing) {
     if (energy == energy_) return;
@@ -49,13 +51,9 @@ class IdlePiston {
     *this = IdlePiston(energy_, since_);
   }
 
-  IdlePiston() = default;
-
  private:
-  IdlePiston(double energy, double since) : energy_(energy), since_(since) {}
-
-  double energy_ = -1;
-  double since_ = 0;
+  double energy_;
+  double since_;
   std::array<double, kIdleTimes.size()> idle_ = {};           // sums of (idle time - s)+
   std::array<double, kIdleTimes.size()> long_idles_ = {};     // number of them
   std::array<double, kIdleTimes.size()> slow_arrivals_ = {};  // at the wall, slower than L'/s

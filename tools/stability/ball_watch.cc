@@ -17,11 +17,6 @@ std::array<Eigen::Vector2d, 3> NearestCentres(const Eigen::Vector2d& position) {
   return {Eigen::Vector2d(x, y), Eigen::Vector2d(x, -y), Eigen::Vector2d(-x, y)};
 }
 
-// False also if a coordinate is not a number.
-bool InsideSquare(const Eigen::Vector2d& position) {
-  return std::fabs(position.x()) <= 0.5 && std::fabs(position.y()) <= 0.5;
-}
-
 }  // namespace
 
 double ShortFlight(const PairGeometry& geometry, double epsilon) {
@@ -37,7 +32,11 @@ bool BallWatch::Hit(const Eigen::Vector2d& position, const Eigen::Vector2d& dire
                     double length, Failures& failures) {
   ++failures.hits;
   failures.negative_times += length < 0;
-  if (!InsideSquare(position) || IsEscape(Depth(position), position, direction)) {
+  // Written as negations, so that NaN counts as an escape. The slack is at least the first bound,
+  // which costs less.
+  const double depth = Depth(position);
+  const bool is_free = depth <= kPositionUlps * epsilon_ || depth <= Slack(position, direction);
+  if (!(position.array().abs() <= 0.5).all() || !is_free) {
     ++failures.escapes;
     return false;
   }
@@ -65,12 +64,6 @@ double BallWatch::Slack(const Eigen::Vector2d& position, const Eigen::Vector2d& 
     cosine = std::min(cosine, std::fabs(direction.dot(normal)) / rho_);
   }
   return kPositionUlps * epsilon_ / std::max(cosine, std::sqrt(epsilon_));
-}
-
-bool BallWatch::IsEscape(double depth, const Eigen::Vector2d& position,
-                         const Eigen::Vector2d& direction) const {
-  if (depth <= kPositionUlps * epsilon_) return false;
-  return !(depth <= Slack(position, direction));
 }
 
 bool BallWatch::HeadsInward(const Eigen::Vector2d& position,

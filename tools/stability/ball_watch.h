@@ -87,8 +87,6 @@ class BallWatch {
  private:
   // The depth inside a disc; negative outside.
   double Depth(const Eigen::Vector2d& position) const;
-  bool IsEscape(double depth, const Eigen::Vector2d& position,
-                const Eigen::Vector2d& direction) const;
 
   double rho_;
   double epsilon_;

@@ -49,6 +49,14 @@ struct Method {
   bool (*can_be_checked)(const Geometry& geometry) = nullptr;
 };
 
+// Runs each start by itself.
+template <auto run_one, typename Geometry, typename Start>
+Failures OneByOne(const Geometry& geometry, std::span<const Start> starts, uint64_t length) {
+  Failures failures = {.orbits = starts.size()};
+  for (const Start& start : starts) run_one(geometry, start, length, failures);
+  return failures;
+}
+
 using PairCase = Case<PairGeometry, PairState>;
 using GasCase = Case<GasGeometry, GasStart>;
 
@@ -68,16 +76,13 @@ std::vector<GasMethod> GasMethods();
 
 // ---- the failures ----
 
-struct MethodResult {
+// A method in a case; name, permitted and promised are those of Case and Method.
+struct CaseResult {
+  std::string name;
+  double permitted;
   std::string method;
   bool promised;
   Failures failures;
-};
-
-struct CaseResult {
-  std::string name;
-  std::vector<MethodResult> methods;  // the same methods in each case
-  double permitted = 0;               // see Case
 };
 
 // Starts that run together. They fill the lanes, and fit into memory.
@@ -126,22 +131,12 @@ std::vector<CaseResult> RunCases(const std::vector<Case<Geometry, Start>>& cases
   std::vector<CaseResult> results;
   for (const Case<Geometry, Start>& one : cases) {
     std::cerr << "stability: " << one.name << std::endl;
-    CaseResult& result = results.emplace_back(CaseResult{one.name, {}, one.permitted});
     for (const Method<Geometry, Start>& method : methods) {
-      result.methods.push_back({method.name, method.promised, RunCase(one, method, effort)});
+      results.push_back(
+          {one.name, one.permitted, method.name, method.promised, RunCase(one, method, effort)});
     }
   }
   return results;
 }
-
-// ---- the results as tables in Markdown ----
-
-// A row for each case, a column for each method, failures by letter.
-std::string SummaryTable(const std::vector<CaseResult>& cases);
-
-// A row for each case and method, with all numbers of Failures; - for those that no method of these
-// cases looks for.
-std::string CountTable(const std::vector<CaseResult>& cases,
-                       std::span<uint64_t Failures::*const> not_looked_for);
 
 }  // namespace ballpiston::stability

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <iterator>
+
 #include "core/sampling/invariant_measure.h"
 #include "tools/flows/paper.h"
 #include "tools/stability/ball_watch.h"
@@ -31,19 +34,6 @@ std::vector<Place<Geometry>> Each(const std::vector<Geometry>& geometries, uint6
   return places;
 }
 
-// A ball alone, for which any delta will do. It makes so many hits; 0: until no tip can hold it any
-// longer.
-Place<PairGeometry> CellAt(double rho, uint64_t starts, uint64_t hits) {
-  const PairGeometry geometry = *PairGeometry::Create(rho, 0.5 * PairDeltaBound(rho));
-  return {geometry, starts, hits > 0 ? hits : LongestTipSequence(geometry) + 4};
-}
-
-std::vector<Place<PairGeometry>> CellsAt(const Numbers& rhos, uint64_t starts, uint64_t hits) {
-  std::vector<Place<PairGeometry>> places;
-  for (const double rho : rhos) places.push_back(CellAt(rho, starts, hits));
-  return places;
-}
-
 // Pairs and gases whose delta takes each share of its bound.
 std::vector<PairGeometry> PairsAt(const Numbers& rhos, const Numbers& shares) {
   std::vector<PairGeometry> pairs;
@@ -73,6 +63,16 @@ std::vector<PairGeometry> PaperPairs(const Numbers& deltas) {
   std::vector<PairGeometry> pairs;
   for (const double delta : deltas) pairs.push_back(*PairGeometry::Create(kPaperRho, delta));
   return pairs;
+}
+
+// A ball alone, for which any delta will do. It makes so many hits; 0: until no tip can hold it any
+// longer.
+std::vector<Place<PairGeometry>> CellsAt(const Numbers& rhos, uint64_t starts, uint64_t hits) {
+  std::vector<Place<PairGeometry>> places = Each(PairsAt(rhos, {0.5}), starts, hits);
+  for (Place<PairGeometry>& place : places) {
+    if (hits == 0) place.length = LongestTipSequence(place.geometry) + 4;
+  }
+  return places;
 }
 
 // ---- the starts ----
@@ -110,17 +110,15 @@ std::vector<PairCase> BallCases() {
        CellsAt({kMaxRho - 1e-3, kMaxRho - 1e-6, kMaxRho - 1e-9}, kOrbits, kLong),
        Ball(AnywhereOnWall)},
       {"aimed at tips of cusps: rho - 1/2 = 1e-6, 1e-9, 1e-12",
-       {CellAt(0.5 + 1e-6, 100'000, kOneTip), CellAt(0.5 + 1e-9, 4'000, kOneTip),
-        CellAt(0.5 + 1e-12, 100, kOneTip)},
+       {CellsAt({0.5 + 1e-6}, 100'000, kOneTip)[0], CellsAt({0.5 + 1e-9}, 4'000, kOneTip)[0],
+        CellsAt({0.5 + 1e-12}, 100, kOneTip)[0]},
        Ball(AimedAtTip)},
       {"aimed at tips, rho = 0.501, 0.5296, 0.6, 0.7, 1/sqrt 2 - 1e-6",
        CellsAt({0.501, kPaperRho, 0.6, 0.7, kMaxRho - 1e-6}, kMany, kOneTip), Ball(AimedAtTip)},
       {"grazing, rho = 0.501, 0.5296, 0.6, 0.65, 0.7",
        CellsAt({0.501, kPaperRho, 0.6, 0.65, 0.7}, kMany, kOneTip), Ball(AimedToGraze)},
-      {"long, a ball at rho = 0.5296",
-       {CellAt(kPaperRho, kLongRuns, 10'000'000)},
-       Ball(AnywhereOnWall),
-       kRounding},
+      {"long, a ball at rho = 0.5296", CellsAt({kPaperRho}, kLongRuns, 10'000'000),
+       Ball(AnywhereOnWall), kRounding},
   };
 }
 
@@ -129,10 +127,9 @@ std::vector<PairCase> PairCases() {
   const Numbers shares = {1, 0.3};
   const auto usual = PairsAt({0.501, kPaperRho, 0.6, 0.7}, shares);
   const auto slow = PairsAt({kPaperRho, 0.6}, shares);
-  std::vector<PairGeometry> any = usual;
-  for (const double rho : {0.5 + 1e-6, 0.5 + 1e-9, kMaxRho - 1e-3}) {
-    any.push_back(*PairGeometry::Create(rho, PairDeltaBound(rho)));
-  }
+  auto any = usual;
+  std::ranges::copy(PairsAt({0.5 + 1e-6, 0.5 + 1e-9, kMaxRho - 1e-3}, {1}),
+                    std::back_inserter(any));
   return {
       {"any orbits, also rho - 1/2 = 1e-6, 1e-9 and 1/sqrt 2 - rho = 1e-3", Each(any, 2'000, 20),
        Pair(DrawFromCollisionMeasure)},

@@ -28,12 +28,11 @@ struct Failures {
   uint64_t missed = 0;          // the ball beyond the piston
   uint64_t phantoms = 0;        // contacts with the piston elsewhere
   uint64_t beyond_walls = 0;    // pistons of a gas at a turn or a contact beyond a wall
-  double energy = kNoEnergy;    // worst |dE/E|, if it was measured; infinite if NaN
+  // The worst |dE/E|, if it was measured; infinite if an error was not a number.
+  double energy = std::numeric_limits<double>::quiet_NaN();
   // For each orbit that reached its end, the change of dE/E in its second half; for a gas, the
   // change since its start. The rounding of the start does not contribute.
   Moments gain = {};
-
-  static constexpr double kNoEnergy = std::numeric_limits<double>::quiet_NaN();
 
   void SeeEnergy(double error) { energy = std::fmax(energy, ErrorSize(error)); }  // fmax drops NaN
   uint64_t Total() const;  // failures of all kinds

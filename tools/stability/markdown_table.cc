@@ -2,62 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 
 namespace ballpiston::stability {
-namespace {
 
-std::string Padded(const std::string& cell, size_t width, bool left) {
-  const std::string space(width - std::min(width, cell.size()), ' ');
-  return left ? cell + space : space + cell;
-}
-
-std::string Line(const std::vector<std::string>& cells, const std::vector<size_t>& widths,
-                 size_t labels) {
-  std::string line = "|";
-  for (size_t i = 0; i < cells.size(); ++i) {
-    absl::StrAppend(&line, " ", Padded(cells[i], widths[i], i < labels), " |");
+std::string MarkdownTable(Rows rows, size_t labels) {
+  for (size_t i = rows.size() - 1; i > 1; --i) {
+    if (rows[i].front() == rows[i - 1].front()) rows[i].front().clear();
   }
-  return line + "\n";
-}
-
-std::string Rule(const std::vector<size_t>& widths, size_t labels) {
-  std::string line = "|";
-  for (size_t i = 0; i < widths.size(); ++i) {
-    absl::StrAppend(&line, i < labels ? ":" : "-", std::string(widths[i], '-'),
-                    i < labels ? "-|" : ":|");
+  std::string rule = "|";
+  for (size_t i = 0; i < rows.front().size(); ++i) {
+    size_t width = 1;
+    for (const auto& row : rows) width = std::max(width, row[i].size());
+    const bool is_text = i < labels;
+    for (auto& row : rows) {
+      row[i].insert(is_text ? row[i].size() : 0, width - row[i].size(), ' ');
+    }
+    absl::StrAppend(&rule, is_text ? ":" : "-", std::string(width, '-'), is_text ? "-|" : ":|");
   }
-  return line + "\n";
-}
-
-}  // namespace
-
-void MarkdownTable::Add(std::vector<std::string> row) {
-  const std::string before = std::exchange(group_, row.front());
-  if (group_ == before) row.front().clear();
-  rows_.push_back(std::move(row));
-}
-
-std::string MarkdownTable::Text(size_t labels) const {
-  std::vector<size_t> widths(rows_.front().size(), 1);
-  for (const auto& row : rows_) {
-    for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  std::string text;
+  for (const auto& row : rows) {
+    absl::StrAppend(&text, "| ", absl::StrJoin(row, " | "), " |\n");
+    if (&row == &rows.front()) absl::StrAppend(&text, rule, "\n");
   }
-  std::string text = Line(rows_.front(), widths, labels) + Rule(widths, labels);
-  for (size_t i = 1; i < rows_.size(); ++i) text += Line(rows_[i], widths, labels);
   return text;
 }
 
 std::string CountText(uint64_t count) {
-  const std::string digits = absl::StrCat(count);
-  std::string text;
-  for (size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) text.push_back(',');
-    text.push_back(digits[i]);
-  }
+  std::string text = absl::StrCat(count);
+  for (size_t end = text.size(); end > 3; end -= 3) text.insert(end - 3, ",");
   return text;
 }
 

@@ -1,26 +1,19 @@
-// A table in Markdown. Its columns are padded, so that it is also readable as plain text.
+// Tables in Markdown, and the numbers in them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace ballpiston::stability {
 
-class MarkdownTable {
- public:
-  explicit MarkdownTable(std::vector<std::string> head) : rows_{std::move(head)} {}
+using Rows = std::vector<std::vector<std::string>>;
 
-  // A row has as many cells as the head. The first cell is left empty if it repeats that of the row
-  // before.
-  void Add(std::vector<std::string> row);
-  // The first `labels` columns are texts, the others numbers.
-  std::string Text(size_t labels) const;
-
- private:
-  std::vector<std::vector<std::string>> rows_;
-  std::string group_;  // the first cell of the last row
-};
+// The first row is the head; all rows have as many cells. The first `labels` columns are texts, the
+// others numbers. The columns are padded, so that the table is also readable as plain text. A first
+// cell that repeats that of the row before is left empty.
+std::string MarkdownTable(Rows rows, size_t labels);
 
 std::string CountText(uint64_t count);  // 1,234,567
 std::string ErrorText(double error);    // 1.2e-15; 0; - for NaN

@@ -289,15 +289,15 @@ std::vector<std::string> BrokenClaims(const std::vector<ModelError>& errors) {
 }
 
 std::string ModelErrorTable(const std::vector<ModelError>& errors) {
-  MarkdownTable table(
-      {"claim", "place", "difference", "its standard error", "stated", "ratio", "at most 4 times"});
+  Rows rows = {
+      {"claim", "place", "difference", "its standard error", "stated", "ratio", "at most 4 times"}};
   for (const ModelError& error : errors) {
-    table.Add({ClaimOf(error.question), PlaceOf(error.question), SignedText(error.difference),
-               ErrorText(error.standard_error), ErrorText(error.Stated()),
-               error.Counts() ? absl::StrFormat("%.2f", error.Ratio()) : "-",
-               YesOrNo(error.IsTight())});
+    rows.push_back({ClaimOf(error.question), PlaceOf(error.question), SignedText(error.difference),
+                    ErrorText(error.standard_error), ErrorText(error.Stated()),
+                    error.Counts() ? absl::StrFormat("%.2f", error.Ratio()) : "-",
+                    YesOrNo(error.IsTight())});
   }
-  return table.Text(2);
+  return MarkdownTable(rows, 2);
 }
 
 }  // namespace ballpiston::stability

@@ -120,12 +120,6 @@ PairState Backwards(const PairGeometry& geometry, const Aim& aim) {
   }
 }
 
-// Reverses the ball if it does not move towards the wall of its quadrant.
-void TurnToWall(PairState& state) {
-  const Vector2d centre = {0.5, std::copysign(0.5, state.position.y())};
-  if (state.direction.dot(state.position - centre) > 0) state.direction = -state.direction;
-}
-
 // A state just after a collision on the surface, with the given speeds; ball and piston separate.
 PairState JustAfterCollision(const PairGeometry& geometry, double ball, double piston,
                              CounterRandom& random) {
@@ -196,7 +190,7 @@ PairState AimedAtPistonsEdge(const PairGeometry& geometry, CounterRandom& random
     const Vector2d edge = PistonsEdge(geometry, random);
     PairState state =
         WithAnyVelocities(edge, Clamped(geometry, edge.x() + RandomOffset(random)), random);
-    TurnToWall(state);
+    if (LeavesWall(edge, state.direction)) state.direction = -state.direction;
     return state;
   });
 }

@@ -1,4 +1,4 @@
-// All that the program counts and measures, and the complaints about it.
+// All that the program counts and measures, as tables in Markdown, and the complaints about it.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,16 @@ namespace ballpiston::stability {
 
 struct System {
   const char* title;
-  std::vector<CaseResult> cases;
+  std::vector<CaseResult> results;  // case by case, of the same methods in each case
   std::vector<uint64_t Failures::*> not_looked_for;  // in these cases
 };
+
+// A row for each case, a column for each method, failures by letter.
+std::string SummaryTable(const System& system);
+
+// A row for each case and method, with all numbers of Failures; - for those that no method of these
+// cases looks for.
+std::string CountTable(const System& system);
 
 // A row for each case of long runs and each method with a run that reached its end.
 //
@@ -28,11 +35,9 @@ struct Results {
   std::vector<ModelError> model_errors;
 };
 
-// One sentence for each broken promise.
-std::vector<std::string> BrokenPromises(const Results& results);
-
-// One sentence for each kind of failure that no method shows. A zero proves something only if the
-// same check has found failures of other methods. No method has phantom hits.
-std::vector<std::string> BlindLooks(const Results& results);
+// One sentence for each broken promise, and one for each kind of failure that no method shows. A
+// zero proves something only if the same check has found failures of other methods. No method has
+// phantom hits.
+std::vector<std::string> Complaints(const Results& results);
 
 }  // namespace ballpiston::stability

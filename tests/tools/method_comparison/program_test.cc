@@ -57,12 +57,28 @@ TEST(Program, APanelWithoutRunsExitsWithOneAndNamesTheFlags) {
   EXPECT_THAT(result.err, HasSubstr("--seconds or a larger --delta"));
 }
 
-TEST(Program, EveryValueThatIsNotPermittedIsNamed) {
-  const ProcessResult result = RunComparison({"--delta=0.4", "--epsilon=-1", "--seconds=0.001"});
-  EXPECT_THAT(result, ExitsWith(2));
-  EXPECT_EQ(result.out, "");
-  for (const char* flag : {"--delta: ", "--epsilon: -1 is not in", "--seconds: 0.001 is not in"}) {
-    EXPECT_THAT(result.err, HasSubstr(std::string("method_comparison: ") + flag));
+// Each run has a second wrong value, so a value that is permitted by mistake starts no measurement.
+TEST(Program, EveryValueThatIsNotPermittedIsNamedWithItsRange) {
+  for (const auto& [flag, complaint] : std::vector<std::pair<std::string, std::string>>{
+           {"--rho=0.3", "--rho: rho is 0.3;"},
+           {"--delta=0", "--delta: delta is 0; permitted at rho"},
+           {"--delta=0.4", "--delta: delta is 0.4; permitted at rho"},
+           {"--delta=nan", "--delta: delta is nan; permitted at rho"},
+           {"--epsilon=0", "--epsilon: 0 is not in (0, 1/2)"},
+           {"--epsilon=0.5", "--epsilon: 0.5 is not in (0, 1/2)"},
+           {"--epsilon=nan", "--epsilon: nan is not in (0, 1/2)"},
+           {"--seconds=0.009", "--seconds: 0.009 is not in [0.01, 60]"},
+           {"--seconds=61", "--seconds: 61 is not in [0.01, 60]"},
+           {"--seconds=nan", "--seconds: nan is not in [0.01, 60]"},
+           {"--relaxation-delta=0.1,0.5", "--relaxation-delta: delta is 0.5; permitted at rho"},
+           {"--relaxation-delta=.1,.1,.1,.1,.1,.1,.1,.1",
+            "--relaxation-delta: 9 values; permitted: at most 8"}}) {
+    const ProcessResult result = RunComparison({"--relaxation-delta=-1", flag});
+    EXPECT_THAT(result, ExitsWith(2));
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, HasSubstr("method_comparison: " + complaint));
+    EXPECT_THAT(result.err,
+                HasSubstr("method_comparison: --relaxation-delta: delta is -1; permitted"));
   }
 }
 
