@@ -11,7 +11,6 @@
 #include "absl/strings/str_join.h"
 #include "client/command/connection.h"
 #include "client/command/interrupts.h"
-#include "client/library/child_process.h"
 #include "client/library/server_process.h"
 
 namespace ballpiston::client {
