@@ -103,12 +103,26 @@ std::string ChainText(double number) {
              : absl::StrFormat("%.17g", number);
 }
 
-// A single number is a range with COUNT 1.
-absl::StatusOr<Range> ParseItem(absl::string_view item) {
-  if (item.find(':') != absl::string_view::npos) return ParseRange(item);
-  const absl::StatusOr<double> number = ParseNumber(item);
-  if (!number.ok()) return number.status();
-  return Range{*number, *number, 1, false};
+// `parse` reads an item that is not a range, and `from` makes an item of a range's number.
+template <typename Item, typename Parse, typename From>
+absl::StatusOr<std::vector<Item>> ParseList(absl::string_view text, const char* items, Parse parse,
+                                            From from) {
+  std::vector<Item> list;
+  for (const absl::string_view part : absl::StrSplit(text, ',')) {
+    if (part.find(':') == absl::string_view::npos) {
+      const absl::StatusOr<Item> item = parse(part);
+      if (!item.ok()) return item.status();
+      list.push_back(*item);
+    } else {
+      const absl::StatusOr<Range> range = ParseRange(part);
+      if (!range.ok()) return range.status();
+      for (int64_t i = 0; i < range->count; ++i) list.push_back(from(range->At(i)));
+    }
+    if (std::ssize(list) > kMaxListLength) {
+      return NotPermitted(text, absl::StrCat("has more than ", kMaxListLength, " ", items));
+    }
+  }
+  return list;
 }
 
 }  // namespace
@@ -144,16 +158,7 @@ absl::StatusOr<uint64_t> ParseSeed(absl::string_view text) {
 }
 
 absl::StatusOr<std::vector<double>> ParseNumberList(absl::string_view text) {
-  std::vector<double> list;
-  for (const absl::string_view item : absl::StrSplit(text, ',')) {
-    const absl::StatusOr<Range> range = ParseItem(item);
-    if (!range.ok()) return range.status();
-    if (std::ssize(list) + range->count > kMaxListLength) {
-      return NotPermitted(text, absl::StrCat("has more than ", kMaxListLength, " numbers"));
-    }
-    for (int64_t i = 0; i < range->count; ++i) list.push_back(range->At(i));
-  }
-  return list;
+  return ParseList<double>(text, "numbers", ParseNumber, [](double x) { return x; });
 }
 
 std::string ShapeText(absl::string_view text) {
@@ -162,20 +167,10 @@ std::string ShapeText(absl::string_view text) {
 }
 
 absl::StatusOr<std::vector<std::string>> ParseShapeList(absl::string_view text) {
-  std::vector<std::string> list;
-  for (const absl::string_view item : absl::StrSplit(text, ',')) {
-    if (item.find(':') == absl::string_view::npos) {
-      list.push_back(ShapeText(item));
-    } else {
-      const auto range = ParseRange(item);
-      if (!range.ok()) return range.status();
-      for (int64_t i = 0; i < range->count; ++i) list.push_back(ChainText(range->At(i)));
-    }
-    if (std::ssize(list) > kMaxListLength) {
-      return NotPermitted(text, absl::StrCat("has more than ", kMaxListLength, " shapes"));
-    }
-  }
-  return list;
+  const auto shape = [](absl::string_view part) {
+    return absl::StatusOr<std::string>(ShapeText(part));
+  };
+  return ParseList<std::string>(text, "shapes", shape, ChainText);
 }
 
 }  // namespace ballpiston::client

@@ -126,8 +126,8 @@ Page ProgramPage() {
   page.sections = {verbs,
                    {"Flags without a verb",
                     {{"-h, --help", "print this page"}, {"--version", "print the version"}}},
-                   {"Exit codes", ExitCodes()},
-                   {"Files", Files()}};
+                   {"Exit codes", kExitCodes},
+                   {"Files", kFiles}};
   return page;
 }
 

@@ -179,12 +179,6 @@ absl::Status SavePoints(const Connection& connection, const v1::EnsembleJob& job
   return saved;
 }
 
-absl::Status TooMany(size_t jobs) {
-  return absl::InvalidArgumentError(
-      absl::StrCat("--save and CSV are for the result of one job, not of ", jobs,
-                   "; ballpiston export writes the estimates of many"));
-}
-
 // Checks --save before a job runs: the file's ending and folder.
 absl::Status CheckSave(const Options& options) {
   if (options.save.empty()) return absl::OkStatus();
@@ -271,7 +265,9 @@ VerbResult Result(const Options& options, Terminal& terminal) {
   return WithJobs(
       options, terminal, {}, [&](const auto& connection, const auto& jobs) -> VerbResult {
         if (jobs.size() > 1 && (!options.save.empty() || options.format == Format::kCsv)) {
-          return TooMany(jobs.size());
+          return absl::InvalidArgumentError(
+              absl::StrCat("--save and CSV are for the result of one job, not of ", jobs.size(),
+                           "; ballpiston export writes the estimates of many"));
         }
         // A label may stand for one job today and for two tomorrow.
         const bool may_be_many = jobs.size() > 1 || options.jobs.empty();

@@ -691,35 +691,29 @@ const FlagGroup& ServerFlags() { return kServer; }
 const FlagGroup& TargetFlags() { return kTarget; }
 const std::vector<const FlagGroup*>& QuestionFlags() { return kQuestion; }
 
-const std::vector<Remark>& ExitCodes() {
-  static const auto* const codes = new std::vector<Remark>{
-      {"0", "success"},
-      {"2",
-       "wrong usage or an invalid argument, a job too large for the server, or output that cannot "
-       "be written"},
-      {"3", "no server answers, or the server is busy: retry later"},
-      {"4", "the job failed or was cancelled, or its state does not permit the call"},
-      {"5", "no such job, or no result of that point"},
-      {"6", "not authenticated or not authorised"},
-      {"130", "interrupted"}};
-  return *codes;
-}
+const std::vector<Remark> kExitCodes = {
+    {"0", "success"},
+    {"2",
+     "wrong usage or an invalid argument, a job too large for the server, or output that cannot "
+     "be written"},
+    {"3", "no server answers, or the server is busy: retry later"},
+    {"4", "the job failed or was cancelled, or its state does not permit the call"},
+    {"5", "no such job, or no result of that point"},
+    {"6", "not authenticated or not authorised"},
+    {"130", "interrupted"}};
 
-const std::vector<Remark>& Files() {
-  static const auto* const files = new std::vector<Remark>{
-      {"~/.config/ballpiston/config.toml",
-       "values for flags that are not given. A line such as format = \"csv\" applies to every verb "
-       "that has the flag; below [run] it applies only to run. Environment variables override the "
-       "file, and flags override both; an empty variable counts as not set. XDG_CONFIG_HOME "
-       "replaces ~/.config"},
-      {"~/.local/state/ballpiston",
-       "jobs, log and socket of the private server. XDG_STATE_HOME replaces ~/.local/state. "
-       "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"},
-      {"python3",
-       "draws figures; /usr/bin/python3 if the one in PATH lacks their packages. BALLPISTON_PYTHON "
-       "is another Python to start"}};
-  return *files;
-}
+const std::vector<Remark> kFiles = {
+    {"~/.config/ballpiston/config.toml",
+     "values for flags that are not given. A line such as format = \"csv\" applies to every verb "
+     "that has the flag; below [run] it applies only to run. Environment variables override the "
+     "file, and flags override both; an empty variable counts as not set. XDG_CONFIG_HOME "
+     "replaces ~/.config"},
+    {"~/.local/state/ballpiston",
+     "jobs, log and socket of the private server. XDG_STATE_HOME replaces ~/.local/state. "
+     "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"},
+    {"python3",
+     "draws figures; /usr/bin/python3 if the one in PATH lacks their packages. BALLPISTON_PYTHON "
+     "is another Python to start"}};
 
 bool IsOf(const FlagGroup& group, const Flag& flag) {
   return std::any_of(group.flags.begin(), group.flags.end(),

@@ -71,6 +71,7 @@ bool IsToken(absl::string_view text) {
                      [](unsigned char c) { return absl::ascii_isgraph(c); });
 }
 
+// Empty if there is none.
 absl::StatusOr<std::string> Token(const ChannelSecurity& security) {
   std::string token = security.token;
   if (!security.token_file.empty()) {
@@ -79,7 +80,7 @@ absl::StatusOr<std::string> Token(const ChannelSecurity& security) {
     if (!text.ok()) return text.status();
     token = std::string(absl::StripAsciiWhitespace(*text));
   }
-  if (IsToken(token)) return token;
+  if (IsToken(token) || !security.HasToken()) return token;
   return absl::InvalidArgumentError(absl::StrCat(
       security.token_file.empty() ? "the token" : "the token file " + security.token_file,
       " must be one word of 1 to ", kLongestToken, " printable characters"));
@@ -151,19 +152,15 @@ absl::Status CheckSecurity(const ChannelSecurity& security, absl::string_view ad
 
 absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> CredentialsOf(
     const ChannelSecurity& security, const std::string& address) {
-  std::string token;
-  if (security.HasToken()) {
-    absl::StatusOr<std::string> read = Token(security);
-    if (!read.ok()) return read.status();
-    token = *std::move(read);
-  }
+  const absl::StatusOr<std::string> token = Token(security);
+  if (!token.ok()) return token.status();
   if (!security.HasTls()) {
-    return IsLoopback(address) ? LoopbackCredentials(address, token)
+    return IsLoopback(address) ? LoopbackCredentials(address, *token)
                                : grpc::InsecureChannelCredentials();
   }
   auto channel = TlsCredentials(security.ca);
-  if (!channel.ok() || token.empty()) return channel;
-  return grpc::CompositeChannelCredentials(*channel, grpc::AccessTokenCredentials(token));
+  if (!channel.ok() || token->empty()) return channel;
+  return grpc::CompositeChannelCredentials(*channel, grpc::AccessTokenCredentials(*token));
 }
 
 }  // namespace ballpiston::client
