@@ -1,6 +1,7 @@
 // ballpiston help: prints the pages of verbs, or writes them to files.
 #include "client/command/reference.h"
 
+#include <filesystem>
 #include <set>
 #include <vector>
 
@@ -273,9 +274,9 @@ absl::Status NoPageOf(const std::vector<std::string>& words) {
   return absl::InvalidArgumentError(NotOneOf(absl::StrJoin(words, " "), names));
 }
 
-absl::Status WriteManPages(const fs::path& folder) {
+absl::Status WriteManPages(const std::filesystem::path& folder) {
   std::error_code error;
-  fs::create_directories(folder, error);
+  std::filesystem::create_directories(folder, error);
   absl::Status status;
   for (const Verb* const verb : AllPages()) {
     NewFile file("--out", folder / (PageName(verb) + ".1"));
