@@ -17,7 +17,6 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "client/command/config_file.h"
-#include "client/command/points_file.h"
 #include "client/command/reference.h"
 #include "client/command/sorted_words.h"
 #include "client/command/suggestion.h"
@@ -279,7 +278,9 @@ std::string WithTargetFlags(const std::string& description) {
 std::string MessageWithFlags(const absl::Status& error, const Verb& verb, const Options& options) {
   const bool has_file = !options.spec_file.empty() || !options.again.empty();
   std::string message(error.message());
-  for (const auto& [field, description] : ErrorViolations(error)) {
+  const google::rpc::BadRequest request = ErrorViolations(error);
+  for (const auto& violation : request.field_violations()) {
+    const std::string &field = violation.field(), &description = violation.description();
     const bool is_of_file = has_file && absl::StartsWith(field, kSpec);
     const std::string in_flags =
         is_of_file

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/match.h"
@@ -28,37 +29,33 @@ bool HasSecurityFlags(const Options& options) {
   });
 }
 
-std::string HintWithTls(const ChannelSecurity& security, absl::string_view message) {
-  if (absl::StrContains(message, "certificate verify failed")) {
-    return absl::StrCat(
-        "the server's certificate is not valid now, or was not signed by an authority ",
-        security.ca.empty() ? "that this system knows" : "in " + security.ca,
-        ": name the right authority with --ca FILE");
-  }
-  if (absl::StrContains(message, "is not in peer certificate")) {
-    return "the server's certificate is for another host: write the host as in the certificate";
-  }
-  if (absl::StrContains(message, "wrong version number") ||
-      absl::StrContains(message, "packet length too long")) {
-    return "the server does not use TLS: leave out --ca and --tls";
-  }
-  return "";
-}
+// What to do if gRPC's message contains this part.
+struct Hint {
+  absl::string_view part;
+  std::string text;
+};
 
-bool WasClosed(absl::string_view message) {
-  return absl::StrContains(message, "Socket closed") ||
-         absl::StrContains(message, "Connection reset");
-}
-
-std::string HintWithoutTls(absl::string_view message) {
-  if (!WasClosed(message)) return "";
-  return "if the server uses TLS: --ca FILE, or --tls if this system knows its authority";
-}
-
-std::string HintOfSocket(absl::string_view message) {
-  if (!WasClosed(message) && !absl::StrContains(message, "Permission denied")) return "";
-  return "perhaps it is another user's server: only its own user can open a Unix socket; the users "
-         "of a machine share a server at a loopback address, each with a token";
+std::vector<Hint> HintsFor(const std::string& address, const ChannelSecurity& security) {
+  const std::string foreign =
+      "perhaps it is another user's server: only its own user can open a Unix socket; the users of "
+      "a machine share a server at a loopback address, each with a token";
+  const std::string use_tls =
+      "if the server uses TLS: --ca FILE, or --tls if this system knows its authority";
+  const std::string no_tls = "the server does not use TLS: leave out --ca and --tls";
+  if (IsSocket(address)) {
+    return {
+        {"Socket closed", foreign}, {"Connection reset", foreign}, {"Permission denied", foreign}};
+  }
+  if (!security.HasTls()) return {{"Socket closed", use_tls}, {"Connection reset", use_tls}};
+  return {{"certificate verify failed",
+           absl::StrCat("the server's certificate is not valid now, or was not signed by an "
+                        "authority ",
+                        security.ca.empty() ? "that this system knows" : "in " + security.ca,
+                        ": name the right authority with --ca FILE")},
+          {"is not in peer certificate",
+           "the server's certificate is for another host: write the host as in the certificate"},
+          {"wrong version number", no_tls},
+          {"packet length too long", no_tls}};
 }
 
 // The flag whose value the error of OpenChannel is about.
@@ -118,10 +115,10 @@ absl::StatusOr<Connection> Connect(const Options& options, bool may_start) {
 
 std::string ConnectionHint(const std::string& address, const ChannelSecurity& security,
                            absl::string_view message) {
-  const std::string hint = IsSocket(address)   ? HintOfSocket(message)
-                           : security.HasTls() ? HintWithTls(security, message)
-                                               : HintWithoutTls(message);
-  return hint.empty() ? "" : absl::StrCat("\n  ", hint);
+  for (const Hint& hint : HintsFor(address, security)) {
+    if (absl::StrContains(message, hint.part)) return "\n  " + hint.text;
+  }
+  return "";
 }
 
 // An error without a reason is an error of the connection; the server's errors have a reason.

@@ -11,7 +11,6 @@
 #include <memory>
 #include <string>
 
-#include "absl/status/statusor.h"
 #include "client/command/options.h"
 #include "client/command/verbs.h"
 #include "client/library/client.h"

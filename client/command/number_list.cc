@@ -16,10 +16,6 @@
 namespace ballpiston::client {
 namespace {
 
-absl::Status Bad(absl::string_view text, absl::string_view reason) {
-  return absl::InvalidArgumentError(absl::StrCat(Quoted(text), " ", reason));
-}
-
 // std::from_chars rejects blanks, a plus sign and hexadecimal numbers, but accepts nan and inf.
 // Therefore no letters other than e are permitted here.
 std::errc ReadNumber(absl::string_view text, double& value) {
@@ -75,28 +71,28 @@ constexpr char kRangeForm[] = "is not a range: write FROM:TO:COUNT or FROM:TO:CO
 
 absl::StatusOr<Range> ParseRange(absl::string_view text) {
   const std::vector<absl::string_view> parts = absl::StrSplit(text, ':');
-  if (parts.size() < 3 || parts.size() > 4) return Bad(text, kRangeForm);
-  if (parts.size() == 4 && parts[3] != "log") return Bad(text, kRangeForm);
+  if (parts.size() < 3 || parts.size() > 4) return NotPermitted(text, kRangeForm);
+  if (parts.size() == 4 && parts[3] != "log") return NotPermitted(text, kRangeForm);
   const auto from = ToNumber(parts[0]);
   const auto to = ToNumber(parts[1]);
   const auto count = ToCount(parts[2]);
-  if (!from || !to) return Bad(text, "has an end that is not a decimal number");
+  if (!from || !to) return NotPermitted(text, "has an end that is not a decimal number");
   if (!count || *count < 1 || *count > kMaxListLength) {
-    return Bad(text,
-               absl::StrCat("has a count that is not a whole number from 1 to ", kMaxListLength));
+    return NotPermitted(
+        text, absl::StrCat("has a count that is not a whole number from 1 to ", kMaxListLength));
   }
   if (*count == 1 && *from != *to) {
-    return Bad(
+    return NotPermitted(
         text,
         "has two different ends and a count of 1; permitted: a count of at least 2, or equal ends");
   }
   const bool logarithmic = parts.size() == 4;
   if (logarithmic && (*from <= 0 || *to <= 0)) {
-    return Bad(text, "is logarithmic: both ends must be above 0");
+    return NotPermitted(text, "is logarithmic: both ends must be above 0");
   }
   // The ends times the count must stay finite.
   if (std::abs(*from) > kLargest || std::abs(*to) > kLargest) {
-    return Bad(text, "has an end beyond 1e150");
+    return NotPermitted(text, "has an end beyond 1e150");
   }
   return Range{*from, *to, *count, logarithmic};
 }
@@ -107,21 +103,39 @@ std::string ChainText(double number) {
              : absl::StrFormat("%.17g", number);
 }
 
-// A single number is a range with COUNT 1.
-absl::StatusOr<Range> ParseItem(absl::string_view item) {
-  if (item.find(':') != absl::string_view::npos) return ParseRange(item);
-  const absl::StatusOr<double> number = ParseNumber(item);
-  if (!number.ok()) return number.status();
-  return Range{*number, *number, 1, false};
+// `parse` reads an item that is not a range, and `from` makes an item of a range's number.
+template <typename Item, typename Parse, typename From>
+absl::StatusOr<std::vector<Item>> ParseList(absl::string_view text, const char* items, Parse parse,
+                                            From from) {
+  std::vector<Item> list;
+  for (const absl::string_view part : absl::StrSplit(text, ',')) {
+    if (part.find(':') == absl::string_view::npos) {
+      const absl::StatusOr<Item> item = parse(part);
+      if (!item.ok()) return item.status();
+      list.push_back(*item);
+    } else {
+      const absl::StatusOr<Range> range = ParseRange(part);
+      if (!range.ok()) return range.status();
+      for (int64_t i = 0; i < range->count; ++i) list.push_back(from(range->At(i)));
+    }
+    if (std::ssize(list) > kMaxListLength) {
+      return NotPermitted(text, absl::StrCat("has more than ", kMaxListLength, " ", items));
+    }
+  }
+  return list;
 }
 
 }  // namespace
+
+absl::Status NotPermitted(absl::string_view text, absl::string_view reason) {
+  return absl::InvalidArgumentError(absl::StrCat(Quoted(text), " ", reason));
+}
 
 absl::StatusOr<double> ParseNumber(absl::string_view text) {
   double value = 0;
   const std::errc error = ReadNumber(text, value);
   if (error == std::errc()) return value;
-  return Bad(
+  return NotPermitted(
       text,
       error == std::errc::result_out_of_range
           ? "is beyond double precision; permitted: 0, or an absolute value from 5e-324 to 1.79e308"
@@ -131,29 +145,20 @@ absl::StatusOr<double> ParseNumber(absl::string_view text) {
 absl::StatusOr<int64_t> ParseCount(absl::string_view text) {
   if (const auto count = ToCount(text)) return *count;
   if (IsWhole(ToNumber(text))) {
-    return Bad(text, "is out of range; permitted: at most 9223372036854775807 in size");
+    return NotPermitted(text, "is out of range; permitted: at most 9223372036854775807 in size");
   }
-  return Bad(text, "is not a whole number such as 10000 or 1e6");
+  return NotPermitted(text, "is not a whole number such as 10000 or 1e6");
 }
 
 absl::StatusOr<uint64_t> ParseSeed(absl::string_view text) {
   uint64_t seed = 0;
   const bool digits = text.find_first_not_of("0123456789") == absl::string_view::npos;
   if (digits && absl::SimpleAtoi(text, &seed)) return seed;
-  return Bad(text, "is not a whole number from 0 to 18446744073709551615");
+  return NotPermitted(text, "is not a whole number from 0 to 18446744073709551615");
 }
 
 absl::StatusOr<std::vector<double>> ParseNumberList(absl::string_view text) {
-  std::vector<double> list;
-  for (const absl::string_view item : absl::StrSplit(text, ',')) {
-    const absl::StatusOr<Range> range = ParseItem(item);
-    if (!range.ok()) return range.status();
-    if (std::ssize(list) + range->count > kMaxListLength) {
-      return Bad(text, absl::StrCat("has more than ", kMaxListLength, " numbers"));
-    }
-    for (int64_t i = 0; i < range->count; ++i) list.push_back(range->At(i));
-  }
-  return list;
+  return ParseList<double>(text, "numbers", ParseNumber, [](double x) { return x; });
 }
 
 std::string ShapeText(absl::string_view text) {
@@ -162,20 +167,10 @@ std::string ShapeText(absl::string_view text) {
 }
 
 absl::StatusOr<std::vector<std::string>> ParseShapeList(absl::string_view text) {
-  std::vector<std::string> list;
-  for (const absl::string_view item : absl::StrSplit(text, ',')) {
-    if (item.find(':') == absl::string_view::npos) {
-      list.push_back(ShapeText(item));
-    } else {
-      const auto range = ParseRange(item);
-      if (!range.ok()) return range.status();
-      for (int64_t i = 0; i < range->count; ++i) list.push_back(ChainText(range->At(i)));
-    }
-    if (std::ssize(list) > kMaxListLength) {
-      return Bad(text, absl::StrCat("has more than ", kMaxListLength, " shapes"));
-    }
-  }
-  return list;
+  const auto shape = [](absl::string_view part) {
+    return absl::StatusOr<std::string>(ShapeText(part));
+  };
+  return ParseList<std::string>(text, "shapes", shape, ChainText);
 }
 
 }  // namespace ballpiston::client

@@ -22,6 +22,9 @@ namespace ballpiston::client {
 
 inline constexpr int64_t kMaxListLength = 100'000;
 
+// 'text' REASON
+absl::Status NotPermitted(absl::string_view text, absl::string_view reason);
+
 absl::StatusOr<double> ParseNumber(absl::string_view text);
 absl::StatusOr<int64_t> ParseCount(absl::string_view text);
 absl::StatusOr<uint64_t> ParseSeed(absl::string_view text);

@@ -31,7 +31,8 @@ VerbResult Plan(const Options& options, Terminal& terminal) {
 VerbResult ListJobs(const Options& options, Terminal& terminal) {
   v1::ListEnsembleJobsRequest request = options.which_jobs;
   request.mutable_labels()->insert(options.labels.begin(), options.labels.end());
-  request.set_view(JobViewFor(options.format));
+  using Request = v1::ListEnsembleJobsRequest;
+  request.set_view(IsJson(options.format) ? Request::FULL : Request::BASIC);
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
     const auto jobs = connection.client.List(request, options.limit);
     if (!jobs.ok()) return jobs.status();

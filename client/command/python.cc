@@ -135,13 +135,13 @@ absl::Status CheckTableFile(const std::string& out) {
   return CheckNewFile("--out", out);
 }
 
-absl::Status CheckPythonFor(const std::string& out) {
-  if (!absl::EndsWith(out, ".parquet")) {
-    return CheckPython("--out " + out, {"ballpiston", "numpy"},
+absl::Status CheckPythonFor(const std::string& flag_and_path) {
+  if (!absl::EndsWith(flag_and_path, ".parquet")) {
+    return CheckPython(flag_and_path, {"ballpiston", "numpy"},
                        "python3-ballpiston and python3-numpy");
   }
   return CheckPython(
-      "--out " + out, {"ballpiston", "pandas", "pyarrow"},
+      flag_and_path, {"ballpiston", "pandas", "pyarrow"},
       "python3-ballpiston and python3-pandas, and pyarrow from the Python Package Index");
 }
 
@@ -209,7 +209,7 @@ VerbResult Export(const Options& options, Terminal& terminal) {
         "--label and names of jobs exclude each other: give one of them, or neither");
   }
   if (absl::Status bad = CheckTableFile(options.out); !bad.ok()) return bad;
-  if (absl::Status bad = CheckPythonFor(options.out); !bad.ok()) return bad;
+  if (absl::Status bad = CheckPythonFor("--out " + options.out); !bad.ok()) return bad;
   std::vector<std::string> arguments = {"export", options.out};
   for (const auto& [key, value] : options.labels) {
     arguments.push_back(absl::StrCat(key, "=", value));

@@ -17,8 +17,8 @@ namespace ballpiston::client {
 absl::Status CheckPython(const std::string& purpose, const std::vector<std::string>& modules,
                          const std::string& packages);
 
-// The same for the table that --out names: .parquet needs more modules.
-absl::Status CheckPythonFor(const std::string& out);
+// The same for a file of arrays or a table, such as "--out FILE.npz": .parquet needs more modules.
+absl::Status CheckPythonFor(const std::string& flag_and_path);
 
 // Whether --out names a file .csv, .npz or .parquet that can be created.
 absl::Status CheckTableFile(const std::string& out);

@@ -7,14 +7,14 @@
 #include <iostream>
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/strip.h"
 #include "client/command/points_file.h"
-#include "client/command/spec_file.h"
 #include "client/command/verb_table.h"
+#include "client/output/json.h"
 #include "client/output/spelling.h"
 
 namespace ballpiston::client {
@@ -43,37 +43,32 @@ absl::StatusOr<TextFile> ReadTextFile(const std::string& flag, const std::string
       absl::StrCat(flag, " ", path, ": ", is_folder ? "is a folder" : std::strerror(errno)));
 }
 
-// Checks only the flags on the command line: with --spec or --again, the flags of the config file
-// are ignored.
-bool HasQuestionFlagsBut(const std::string& whole, const Options& options) {
+// `whole`, --spec or --again, replaces all other flags of the question. Checks only the flags on
+// the command line: those of the config file are ignored.
+absl::Status CheckAlone(const std::string& whole, const Options& options) {
+  bool is_alone = options.spec.experiment() == v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED;
   for (const FlagGroup* group : QuestionFlags()) {
     for (const Flag& flag : group->flags) {
-      if (flag.name != whole && options.given.contains(flag.name)) return true;
+      is_alone = is_alone && (flag.name == whole || !options.given.contains(flag.name));
     }
   }
-  return options.spec.experiment() != v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED;
-}
-
-// `whole` is --spec or --again; `other` is the other of the two.
-absl::Status CheckAlone(const std::string& whole, const std::string& other,
-                        const Options& options) {
-  if (!HasQuestionFlagsBut(whole, options)) return absl::OkStatus();
+  if (is_alone) return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrCat(whole,
                    " holds the whole specification: give no EXPERIMENT, grid, target, --seed, "
                    "--model, --estimate, --verify, --precision or ",
-                   other, " with it"));
+                   whole == "--spec" ? "--again" : "--spec", " with it"));
 }
 
 }  // namespace
 
 absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options) {
   if (!options.again.empty()) {
-    if (absl::Status bad = CheckAlone("--again", "--spec", options); !bad.ok()) return bad;
+    if (absl::Status bad = CheckAlone("--again", options); !bad.ok()) return bad;
     return v1::EnsembleSpec();
   }
   if (!options.spec_file.empty()) {
-    if (absl::Status bad = CheckAlone("--spec", "--again", options); !bad.ok()) return bad;
+    if (absl::Status bad = CheckAlone("--spec", options); !bad.ok()) return bad;
     const absl::StatusOr<TextFile> file = ReadTextFile("--spec", options.spec_file);
     return file.ok() ? ParseSpec(file->name, file->text) : file.status();
   }
@@ -91,6 +86,14 @@ absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options) {
   absl::Status bad = ParsePoints(file->name, file->text, *spec.mutable_grid());
   if (!bad.ok()) return bad;
   return spec;
+}
+
+absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, absl::string_view json) {
+  v1::EnsembleSpec spec;
+  absl::ConsumePrefix(&json, "\xEF\xBB\xBF");  // some programs' mark
+  const absl::Status bad = ReadJson(std::string(json), spec);
+  if (bad.ok()) return spec;
+  return absl::InvalidArgumentError(absl::StrCat("--spec ", name, ": ", bad.message()));
 }
 
 VerbResult WithQuestion(const Options& options, const Terminal& terminal,

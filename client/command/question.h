@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "ballpiston/v1/spec.pb.h"
 #include "client/command/connection.h"
 #include "client/command/options.h"
@@ -19,6 +20,10 @@ namespace ballpiston::client {
 // INVALID_ARGUMENT if there is no experiment, if targets exclude each other, or if the file cannot
 // be used. With --again the returned specification is empty: WithQuestion reads it from the server.
 absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options);
+
+// The content of the file of --spec, which `name` names in messages. INVALID_ARGUMENT, with the
+// parser's message, if the text is not JSON, or has a field that a specification does not have.
+absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, absl::string_view json);
 
 using VerbOfQuestion = std::function<VerbResult(const Connection&, const Options& asked)>;
 

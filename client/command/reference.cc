@@ -127,12 +127,19 @@ Page ProgramPage() {
   page.sections = {verbs,
                    {"Flags without a verb",
                     {{"-h, --help", "print this page"}, {"--version", "print the version"}}},
-                   {"Exit codes", ExitCodes()},
-                   {"Files", Files()}};
+                   {"Exit codes", kExitCodes},
+                   {"Files", kFiles}};
   return page;
 }
 
 Page PageOf(const Verb* verb) { return verb == nullptr ? ProgramPage() : PageOf(*verb); }
+
+// The program, and its verbs.
+std::vector<const Verb*> AllPages() {
+  std::vector<const Verb*> pages = {nullptr};
+  for (const Verb& verb : Verbs()) pages.push_back(&verb);
+  return pages;
+}
 
 // ---- text ----
 
@@ -228,9 +235,8 @@ std::string ManPage(const Verb* verb) {
     absl::StrAppend(&out, ".PP\n", Roff(example), "\n");
   }
   std::vector<std::string> others;
-  if (verb != nullptr) others.push_back(kProgram);
-  if (verb == nullptr) {
-    for (const Verb& other : Verbs()) others.push_back(PageName(&other));
+  for (const Verb* const other : AllPages()) {
+    if ((other == nullptr) != (verb == nullptr)) others.push_back(PageName(other));
   }
   return absl::StrCat(out, ".SH \"SEE ALSO\"\n", Roff(absl::StrJoin(others, "(1), ")), "(1)\n");
 }
@@ -243,15 +249,13 @@ std::string MarkdownReference() {
       "verb shows them.\n";
   std::set<std::string> shared = {"Server", "General flags"}, shown;
   for (const FlagGroup* group : QuestionFlags()) shared.insert(group->title);
-  const auto add = [&](const Verb* verb) {
+  for (const Verb* const verb : AllPages()) {
     Page page = PageOf(verb);
     std::erase_if(page.sections, [&](const Section& section) {
       return shared.contains(section.title) && !shown.insert(section.title).second;
     });
     absl::StrAppend(&out, "\n## ", page.name, "\n\n```\n", PageText(page), "```\n");
-  };
-  add(nullptr);
-  for (const Verb& verb : Verbs()) add(&verb);
+  }
   return out;
 }
 
@@ -270,18 +274,15 @@ absl::Status NoPageOf(const std::vector<std::string>& words) {
   return absl::InvalidArgumentError(NotOneOf(absl::StrJoin(words, " "), names));
 }
 
-absl::Status WriteManPage(const std::string& folder, const Verb* verb) {
-  const fs::path path = fs::path(folder) / (PageName(verb) + ".1");
-  NewFile file("--out", path);
-  file.out() << ManPage(verb);
-  return file.Keep();
-}
-
-absl::Status WriteManPages(const std::string& folder) {
+absl::Status WriteManPages(const std::filesystem::path& folder) {
   std::error_code error;
-  fs::create_directories(folder, error);
-  absl::Status status = WriteManPage(folder, nullptr);
-  for (const Verb& verb : Verbs()) status.Update(WriteManPage(folder, &verb));
+  std::filesystem::create_directories(folder, error);
+  absl::Status status;
+  for (const Verb* const verb : AllPages()) {
+    NewFile file("--out", folder / (PageName(verb) + ".1"));
+    file.out() << ManPage(verb);
+    status.Update(file.Keep());
+  }
   return status;
 }
 

@@ -1,8 +1,6 @@
 // ballpiston submit, run and result: submit a job; run also watches it and prints its result.
 #include <algorithm>
 #include <map>
-#include <memory>
-#include <optional>
 
 #include "absl/status/status.h"
 #include "absl/strings/match.h"
@@ -74,9 +72,9 @@ absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection, const Op
   v1::CreateEnsembleJobRequest request = options.create;
   *request.mutable_spec() = options.spec;
   request.mutable_labels()->insert(options.labels.begin(), options.labels.end());
-  if (!request.request_id().empty()) return CreateOnce(connection, request, terminal);
-  if (options.resume) return Resume(connection, request, options.labels, terminal);
-  request.set_request_id(NewRequestId());
+  const bool has_id = !request.request_id().empty();
+  if (options.resume && !has_id) return Resume(connection, request, options.labels, terminal);
+  if (!has_id) request.set_request_id(NewRequestId());
   return CreateOnce(connection, request, terminal);
 }
 
@@ -100,12 +98,6 @@ std::string ReusedText(const v1::EnsembleJob& job) {
 
 // ---- result ----
 
-void NoteUnfinished(const v1::EnsembleJob& job, const Terminal& terminal) {
-  terminal.Note(absl::StrCat("ballpiston: ", job.name(), " is still ", Spelling(job.state()), ": ",
-                             job.progress().points_done(), " of ", job.progress().points(),
-                             " points are finished"));
-}
-
 // An orbit that left its cell is a defect of the engine, and the warning must not be missed.
 void AddPoint(const v1::PointResult& point, ResultWriter& writer, std::ostream& err) {
   writer.Add(point);
@@ -113,6 +105,52 @@ void AddPoint(const v1::PointResult& point, ResultWriter& writer, std::ostream& 
   err << "ballpiston: warning: point " << point.index() << ": "
       << ExactText(point.health().escapes())
       << " orbits left the cell; this is a defect: do not use the point\n";
+}
+
+bool IsNpz(const Options& options) { return absl::EndsWith(options.save, ".npz"); }
+
+// The Python package makes .npz of .json.
+Format FormatOf(const Options& options) {
+  if (options.save.empty()) return options.format;
+  return absl::EndsWith(options.save, ".csv") ? Format::kCsv : Format::kJson;
+}
+
+// One page of the finished points, or the point of --point.
+absl::StatusOr<v1::ListResultsResponse> PageOf(const Connection& connection,
+                                               const std::string& name, const Options& options,
+                                               const std::string& token) {
+  if (!options.point) {
+    using Request = v1::ListResultsRequest;
+    const auto view = IsJson(FormatOf(options)) ? Request::FULL : Request::BASIC;
+    return connection.client.ResultsPage(name, view, token);
+  }
+  auto point = connection.client.Point(name, *options.point);
+  if (!point.ok()) return point.status();
+  v1::ListResultsResponse page;
+  *page.add_results() = *std::move(point);
+  return page;
+}
+
+// If the server restarts, requests only the current page again: the earlier pages have been
+// printed. Prints nothing before the first page has arrived. `has_names`: also prints the names of
+// the points. They contain the job's id; without them the same points give the same bytes.
+absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job,
+                         const Options& options, bool has_names, std::ostream& out,
+                         std::ostream& err) {
+  const auto writer = NewResultWriter(FormatOf(options), out, /*is_file=*/!options.save.empty());
+  std::string token;
+  do {
+    auto page = PageOf(connection, job.name(), options, token);
+    if (!page.ok()) return HintIfExpired(page.status(), connection, job.name());
+    if (token.empty()) writer->Begin(job);
+    for (v1::PointResult& point : *page->mutable_results()) {
+      if (!has_names) point.clear_name();
+      AddPoint(point, *writer, err);
+    }
+    token = page->next_page_token();
+  } while (!token.empty() && out.good());  // not after a failed write or a closed pipe
+  writer->End();
+  return absl::OkStatus();
 }
 
 // Replaces the content of the unfinished file, a result in JSON, by NumPy arrays.
@@ -130,94 +168,15 @@ absl::Status ToArrays(NewFile& file, const Options& options, Terminal& terminal)
   return absl::InvalidArgumentError(absl::StrCat("--save: ", options.save, " is not written"));
 }
 
-bool IsNpz(const Options& options) { return absl::EndsWith(options.save, ".npz"); }
-
-// The Python package makes .npz of .json.
-Format FormatOf(const Options& options) {
-  if (options.save.empty()) return options.format;
-  return absl::EndsWith(options.save, ".csv") ? Format::kCsv : Format::kJson;
-}
-
-// Where a result goes: standard output, or the file of --save.
-class Destination {
- public:
-  // `options` must have passed CheckSave.
-  Destination(const Options& options, Terminal& terminal) : options_(options), terminal_(terminal) {
-    if (!options.save.empty()) file_.emplace("--save", options.save);
-    writer_ = NewResultWriter(FormatOf(options), out(), /*is_file=*/file_.has_value());
-  }
-
-  v1::ListResultsRequest::View view() const { return ViewFor(FormatOf(options_)); }
-  ResultWriter& writer() { return *writer_; }
-  bool accepts() { return out().good(); }  // false after a failed write or a closed pipe
-
-  // Prints the path of the file, once the file is complete.
-  absl::Status Finish() {
-    writer_->End();
-    if (file_) {
-      const absl::Status converted =
-          IsNpz(options_) ? ToArrays(*file_, options_, terminal_) : absl::OkStatus();
-      if (!converted.ok()) return converted;
-      if (absl::Status kept = file_->Keep(); !kept.ok()) return kept;
-      terminal_.out << options_.save << '\n';
-    }
-    terminal_.out.flush();
-    return absl::OkStatus();
-  }
-
- private:
-  std::ostream& out() { return file_ ? file_->out() : terminal_.out; }
-
-  const Options& options_;
-  Terminal& terminal_;
-  std::optional<NewFile> file_;
-  std::unique_ptr<ResultWriter> writer_;
-};
-
-// One page of the finished points, or the point of --point.
-absl::StatusOr<v1::ListResultsResponse> PageOf(const Connection& connection,
-                                               const std::string& name, const Options& options,
-                                               v1::ListResultsRequest::View view,
-                                               const std::string& token) {
-  if (!options.point) return connection.client.ResultsPage(name, view, token);
-  auto point = connection.client.Point(name, *options.point);
-  if (!point.ok()) return point.status();
-  v1::ListResultsResponse page;
-  *page.add_results() = *std::move(point);
-  return page;
-}
-
-// If the server restarts, requests only the current page again: the earlier pages have been
-// printed. Calls Begin of the writer when the first page has arrived. `has_names`: also prints the
-// names of the points. They contain the job's id; without them the same points give the same bytes.
-absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job,
-                         const Options& options, bool has_names, Destination& destination,
-                         std::ostream& err) {
-  std::string token;
-  do {
-    auto page = PageOf(connection, job.name(), options, destination.view(), token);
-    if (!page.ok()) return HintIfExpired(page.status(), connection, job.name());
-    if (token.empty()) destination.writer().Begin(job);
-    for (v1::PointResult& point : *page->mutable_results()) {
-      if (!has_names) point.clear_name();
-      AddPoint(point, destination.writer(), err);
-    }
-    token = page->next_page_token();
-  } while (!token.empty() && destination.accepts());
-  return absl::OkStatus();
-}
-
-VerbResult End(const v1::EnsembleJob& job, Destination& destination, Terminal& terminal) {
-  if (absl::Status finished = destination.Finish(); !finished.ok()) return finished;
-  if (HasEnded(job.state())) return ReportEnd(job, terminal);
-  NoteUnfinished(job, terminal);
-  return ExitCode::kDone;
-}
-
-absl::Status TooMany(size_t jobs) {
-  return absl::InvalidArgumentError(
-      absl::StrCat("--save and CSV are for the result of one job, not of ", jobs,
-                   "; ballpiston export writes the estimates of many"));
+// Writes the file of --save, and prints its path.
+absl::Status SavePoints(const Connection& connection, const v1::EnsembleJob& job,
+                        const Options& options, bool has_names, Terminal& terminal) {
+  NewFile file("--save", options.save);
+  absl::Status saved = PrintPoints(connection, job, options, has_names, file.out(), terminal.err);
+  if (saved.ok() && IsNpz(options)) saved = ToArrays(file, options, terminal);
+  if (saved.ok()) saved = file.Keep();
+  if (saved.ok()) terminal.out << options.save << '\n';
+  return saved;
 }
 
 // Checks --save before a job runs: the file's ending and folder.
@@ -237,8 +196,7 @@ absl::Status CheckSave(const Options& options) {
   }
   if (absl::Status bad = CheckNewFile("--save", options.save); !bad.ok()) return bad;
   if (!IsNpz(options)) return absl::OkStatus();
-  return CheckPython("--save " + options.save, {"ballpiston", "numpy"},
-                     "python3-ballpiston and python3-numpy");
+  return CheckPythonFor("--save " + options.save);
 }
 
 // Prints the finished points, also of a job that failed or was cancelled. `answered_from_store` is
@@ -249,11 +207,17 @@ VerbResult PrintResult(const Connection& connection, const std::string& name,
   auto job = connection.client.Get(name);
   if (!job.ok()) return job.status();
   job->set_answered_from_store(answered_from_store);
-  Destination destination(options, terminal);
-  const absl::Status status =
-      PrintPoints(connection, *job, options, has_names, destination, terminal.err);
-  if (!status.ok()) return status;
-  return End(*job, destination, terminal);
+  const absl::Status printed =
+      options.save.empty()
+          ? PrintPoints(connection, *job, options, has_names, terminal.out, terminal.err)
+          : SavePoints(connection, *job, options, has_names, terminal);
+  if (!printed.ok()) return printed;
+  terminal.out.flush();
+  if (HasEnded(job->state())) return ReportEnd(*job, terminal);
+  terminal.Note(absl::StrCat("ballpiston: ", name, " is still ", Spelling(job->state()), ": ",
+                             job->progress().points_done(), " of ", job->progress().points(),
+                             " points are finished"));
+  return ExitCode::kDone;
 }
 
 }  // namespace
@@ -301,7 +265,9 @@ VerbResult Result(const Options& options, Terminal& terminal) {
   return WithJobs(
       options, terminal, {}, [&](const auto& connection, const auto& jobs) -> VerbResult {
         if (jobs.size() > 1 && (!options.save.empty() || options.format == Format::kCsv)) {
-          return TooMany(jobs.size());
+          return absl::InvalidArgumentError(
+              absl::StrCat("--save and CSV are for the result of one job, not of ", jobs.size(),
+                           "; ballpiston export writes the estimates of many"));
         }
         // A label may stand for one job today and for two tomorrow.
         const bool may_be_many = jobs.size() > 1 || options.jobs.empty();

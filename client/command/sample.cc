@@ -50,7 +50,7 @@ VerbResult WriteCsv(const Connection& connection, const v1::EnsembleSpec& spec,
 VerbResult Sample(const Options& options, Terminal& terminal) {
   const bool is_csv = absl::EndsWith(options.out, ".csv");
   absl::Status bad = CheckTableFile(options.out);
-  if (bad.ok() && !is_csv) bad = CheckPythonFor(options.out);
+  if (bad.ok() && !is_csv) bad = CheckPythonFor("--out " + options.out);
   if (!bad.ok()) return bad;
   return WithQuestion(
       options, terminal, [&](const Connection& connection, const Options& asked) -> VerbResult {

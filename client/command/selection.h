@@ -2,10 +2,8 @@
 #pragma once
 
 #include <functional>
-#include <string>
 #include <vector>
 
-#include "absl/status/statusor.h"
 #include "client/command/connection.h"
 
 namespace ballpiston::client {

@@ -11,7 +11,7 @@
 #include "absl/strings/str_join.h"
 #include "client/command/connection.h"
 #include "client/command/interrupts.h"
-#include "client/library/child_process.h"
+#include "client/library/local_server.h"
 #include "client/library/server_process.h"
 
 namespace ballpiston::client {

@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
 #include "client/command/options.h"
 #include "client/command/suggestion.h"
 #include "client/output/spelling.h"
@@ -41,20 +43,38 @@ Store<T> To(T Options::*member) {
   return [member](Options& options, T value) { options.*member = std::move(value); };
 }
 
-Value Switch(Store<bool> store);
-Value Text(std::string name, Store<std::string> store, Offer offer = Offer::kNothing);
-Value File(Store<std::string> store);
-Value Number(std::string name, Store<double> store);
-Value Count(Store<int64_t> store);  // N
+// A value that `parse` reads, such as ParseNumberList (number_list.h), and `store` stores.
+template <typename Parse,
+          typename T = typename std::invoke_result_t<Parse, absl::string_view>::value_type>
+Value Parsed(std::string name, Parse parse, std::type_identity_t<Store<T>> store,
+             Offer offer = Offer::kNothing) {
+  return {.name = std::move(name),
+          .read =
+              [store = std::move(store), parse](const std::string& text, Options& options) {
+                absl::StatusOr<T> value = parse(text);
+                if (value.ok()) store(options, *std::move(value));
+                return value.status();
+              },
+          .offer = offer};
+}
+
+absl::StatusOr<bool> ParseBool(absl::string_view text);
+absl::StatusOr<std::string> ParseText(absl::string_view text);     // which is not empty
+absl::StatusOr<std::string> ParseJobName(absl::string_view text);  // ensembleJobs/ID, or ID
+absl::StatusOr<google::protobuf::Timestamp> ParseDate(absl::string_view text);
+
+inline Value Switch(Store<bool> store) { return Parsed("", ParseBool, std::move(store)); }
+inline Value Text(std::string name, Store<std::string> store, Offer offer = Offer::kNothing) {
+  return Parsed(std::move(name), ParseText, std::move(store), offer);
+}
+inline Value File(Store<std::string> store) { return Text("FILE", std::move(store), Offer::kFile); }
+inline Value Job(Store<std::string> store) {
+  return Parsed("JOB", ParseJobName, std::move(store), Offer::kJob);
+}
 Value CountFrom(int64_t least, int64_t most, Store<int64_t> store);
-Value Seed(Store<uint64_t> store);
-Value List(Store<std::vector<double>> store);             // LIST (number_list.h)
-Value Shapes(Store<std::vector<std::string>> store);      // LIST of shapes
 Value Words(std::string name, Store<std::string> store);  // each word
-Value Date(Store<google::protobuf::Timestamp> store);
-Value Job(Store<std::string> store);               // ensembleJobs/ID
-Value Labels(std::string name);                    // KEY=VALUE, separated by commas
-Value Passed(std::string name, std::string flag);  // to ballpistond, with its flag
+Value Labels(std::string name);                           // KEY=VALUE, separated by commas
+Value Passed(std::string name, std::string flag);         // to ballpistond, with its flag
 
 template <typename T>
 using Choices = std::vector<std::pair<std::string, T>>;
@@ -67,9 +87,10 @@ std::string WordOf(T value, const Choices<T>& choices) {
       ->first;
 }
 
-// Also accepts capitals and underscores, as in JSON.
+// Also accepts capitals and underscores, as in JSON. The choices are by default those of a proto's
+// enum.
 template <typename T>
-Value OneOf(std::string name, Choices<T> choices, Store<T> store) {
+Value OneOf(std::string name, Store<T> store, Choices<T> choices = EnumChoices<T>()) {
   Value value{.name = std::move(name), .read = {}, .offer = Offer::kChoices};
   for (const auto& choice : choices) value.choices.push_back(choice.first);
   value.read = [store = std::move(store), choices = std::move(choices), names = value.choices](
@@ -84,10 +105,10 @@ Value OneOf(std::string name, Choices<T> choices, Store<T> store) {
   return value;
 }
 
-// Several choices, separated by commas; calls `store` for each.
+// Several values of a proto's enum, separated by commas; calls `store` for each.
 template <typename T>
-Value SomeOf(std::string name, Choices<T> choices, Store<T> store) {
-  Value value = OneOf(std::move(name), std::move(choices), std::move(store));
+Value SomeOf(std::string name, Store<T> store) {
+  Value value = OneOf(std::move(name), std::move(store));
   value.read = [read = value.read](const std::string& texts, Options& options) {
     for (const absl::string_view text : absl::StrSplit(texts, ',')) {
       if (absl::Status bad = read(std::string(text), options); !bad.ok()) return bad;

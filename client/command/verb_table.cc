@@ -33,21 +33,24 @@ Store<std::string> Identity(std::string ChannelSecurity::*member) {
 using Numbers = google::protobuf::RepeatedField<double>;
 
 Value Grid(Numbers* (v1::Grid::*list)()) {
-  return List([list](Options& options, const std::vector<double>& numbers) {
-    (options.spec.mutable_grid()->*list)()->Add(numbers.begin(), numbers.end());
-  });
+  return Parsed("LIST", ParseNumberList,
+                [list](Options& options, const std::vector<double>& numbers) {
+                  (options.spec.mutable_grid()->*list)()->Add(numbers.begin(), numbers.end());
+                });
 }
 
 Value GridCells() {
-  return Shapes([](Options& options, const std::vector<std::string>& shapes) {
-    options.spec.mutable_grid()->mutable_cells()->Add(shapes.begin(), shapes.end());
-  });
+  return Parsed("LIST", ParseShapeList,
+                [](Options& options, const std::vector<std::string>& shapes) {
+                  options.spec.mutable_grid()->mutable_cells()->Add(shapes.begin(), shapes.end());
+                });
 }
 
 Value Asked(Numbers* (v1::EvaluatePairsRequest::*list)()) {
-  return List([list](Options& options, const std::vector<double>& numbers) {
-    (options.closed_forms.*list)()->Add(numbers.begin(), numbers.end());
-  });
+  return Parsed("LIST", ParseNumberList,
+                [list](Options& options, const std::vector<double>& numbers) {
+                  (options.closed_forms.*list)()->Add(numbers.begin(), numbers.end());
+                });
 }
 
 v1::Target& Target(Options& options) { return *options.spec.mutable_target(); }
@@ -145,24 +148,25 @@ const FlagGroup kGrid = {
 
 const FlagGroup kTarget = {
     "Target (at most one; --tolerance and --budget can be combined)",
-    {{"--samples", Count([](Options& o, int64_t n) { Target(o).set_samples(n); }),
+    {{"--samples", Parsed("N", ParseCount, [](Options& o, int64_t n) { Target(o).set_samples(n); }),
       "samples per point"},
-     {"--collisions", Count([](Options& o, int64_t n) { Target(o).set_collisions(n); }),
+     {"--collisions",
+      Parsed("N", ParseCount, [](Options& o, int64_t n) { Target(o).set_collisions(n); }),
       "ball-piston collisions per point"},
-     {"--tolerance", Number("REL", [](Options& o, double x) { Target(o).set_tolerance(x); }),
+     {"--tolerance",
+      Parsed("REL", ParseNumber, [](Options& o, double x) { Target(o).set_tolerance(x); }),
       "relative standard error of the first estimate; a point is finished when it reaches this "
       "error"},
-     {"--budget", Number("SECONDS", &SetBudget),
+     {"--budget", Parsed("SECONDS", ParseNumber, &SetBudget),
       "time of all workers, divided evenly between the points; with --tolerance, the job fails if "
       "this time is too short"}}};
 
 const FlagGroup kMethod = {
     "Method",
-    {{"--seed", Seed([](Options& o, uint64_t seed) { o.spec.set_seed(seed); }),
+    {{"--seed", Parsed("SEED", ParseSeed, [](Options& o, uint64_t seed) { o.spec.set_seed(seed); }),
       "seed of the random numbers, by default 0"},
      {"--model",
-      OneOf<Spec::Model>("MODEL", EnumChoices<Spec::Model>(),
-                         [](Options& o, Spec::Model model) { o.spec.set_model(model); }),
+      OneOf<Spec::Model>("MODEL", [](Options& o, Spec::Model model) { o.spec.set_model(model); }),
       "model, by default auto; auto is the cheapest model that gives the estimate"},
      Rare({"--estimate",
            Text("NAME",
@@ -171,9 +175,8 @@ const FlagGroup kMethod = {
            "result prints it first; the error of a wrong name lists those that the experiment "
            "permits"}),
      Rare({"--precision",
-           OneOf<Spec::Precision>(
-               "PRECISION", EnumChoices<Spec::Precision>(),
-               [](Options& o, Spec::Precision precision) { o.spec.set_precision(precision); }),
+           OneOf<Spec::Precision>("PRECISION",
+                                  [](Options& o, Spec::Precision x) { o.spec.set_precision(x); }),
            "floating-point precision of the billiard; by default double"}),
      {"--verify", Switch([](Options& o, bool verify) { o.spec.set_verify(verify); }),
       "also simulate points that have a closed form; with --model auto; the exact values stand "
@@ -205,7 +208,7 @@ const FlagGroup kJob = {
     /*is_everyday=*/false};
 
 const FlagGroup kFormat = {"Output",
-                           {{"--format", OneOf("FORMAT", kFormats, To(&Options::format)),
+                           {{"--format", OneOf("FORMAT", To(&Options::format), kFormats),
                              "format on standard output; by default table"}}};
 
 const FlagGroup kFormatAndSave = {
@@ -218,7 +221,7 @@ const FlagGroup kFormatAndSave = {
 
 const FlagGroup kProgress = {
     "Progress",
-    {{"--progress", OneOf<ProgressStyle>("STYLE", kProgressStyles, &SetProgress),
+    {{"--progress", OneOf<ProgressStyle>("STYLE", &SetProgress, kProgressStyles),
       "progress on standard error; by default auto, which shows a bar if standard error is a "
       "terminal, else nothing",
       "BALLPISTON_PROGRESS"}},
@@ -240,9 +243,10 @@ const FlagGroup kClosedForms = {
 
 const FlagGroup kTrace = {
     "Orbit",
-    {Required("--rho", Number("X", [](Options& o, double x) { o.trace.set_rho(x); }),
+    {Required("--rho", Parsed("X", ParseNumber, [](Options& o, double x) { o.trace.set_rho(x); }),
               "disc radius, 1/2 < rho < 1/sqrt(2)"),
-     Required("--delta", Number("X", [](Options& o, double x) { o.trace.set_delta(x); }),
+     Required("--delta",
+              Parsed("X", ParseNumber, [](Options& o, double x) { o.trace.set_delta(x); }),
               "the pistons' penetration, above 0, up to (1 - lambda)/2 for a pair and rho/sqrt(2) "
               "- lambda/2 for a gas"),
      {"--cells",
@@ -250,28 +254,31 @@ const FlagGroup kTrace = {
            [](Options& o, const std::string& cells) { o.trace.set_cells(ShapeText(cells)); }),
       "a periodic gas of this shape instead of a pair: N, a chain of N cells, or NxM, a lattice of "
       "N columns and M rows; at most 1,000 cells"},
-     {"--temperature", Number("X", [](Options& o, double x) { o.trace.set_temperature(x); }),
+     {"--temperature",
+      Parsed("X", ParseNumber, [](Options& o, double x) { o.trace.set_temperature(x); }),
       "temperature of the gas, by default 1; a pair has the energy 1/2"},
-     {"--seed", Seed([](Options& o, uint64_t seed) { o.trace.set_seed(seed); }),
+     {"--seed",
+      Parsed("SEED", ParseSeed, [](Options& o, uint64_t seed) { o.trace.set_seed(seed); }),
       "seed of the random start, by default 0"},
-     Required("--events", Count([](Options& o, int64_t n) { o.trace.set_events(n); }),
+     Required("--events",
+              Parsed("N", ParseCount, [](Options& o, int64_t n) { o.trace.set_events(n); }),
               "number of events, 1 to 1,000,000")}};
 
 const FlagGroup kListFilter = {
     "Which jobs",
     {{"--state",
       SomeOf<v1::EnsembleJob::State>(
-          "STATES", EnumChoices<v1::EnsembleJob::State>(),
-          [](Options& o, v1::EnsembleJob::State state) { o.which_jobs.add_states(state); }),
+          "STATES", [](Options& o, v1::EnsembleJob::State x) { o.which_jobs.add_states(x); }),
       "only jobs in one of these states"},
      {"--experiment",
       SomeOf<Spec::Experiment>(
-          "EXPERIMENTS", EnumChoices<Spec::Experiment>(),
-          [](Options& o, Spec::Experiment x) { o.which_jobs.add_experiments(x); }),
+          "EXPERIMENTS", [](Options& o, Spec::Experiment x) { o.which_jobs.add_experiments(x); }),
       "only jobs with one of these experiments"},
-     {"--since", Date([](Options& o, const google::protobuf::Timestamp& time) {
-        *o.which_jobs.mutable_since() = time;
-      }),
+     {"--since",
+      Parsed("DATE", ParseDate,
+             [](Options& o, const google::protobuf::Timestamp& time) {
+               *o.which_jobs.mutable_since() = time;
+             }),
       "only jobs submitted at this time (UTC) or later"},
      {"--label", Labels("KEY=VALUE"), "only jobs with this label; may be repeated"},
      {"--limit", CountFrom(1, Client::kAllJobs, To(&Options::limit)),
@@ -354,11 +361,10 @@ const FlagGroup kPage = {
     "Page",
     {{"--all", Switch(To(&Options::all)), "describe every flag of the verb"},
      {"--format",
-      OneOf("FORMAT",
-            Choices<PageFormat>{{"text", PageFormat::kText},
-                                {"man", PageFormat::kMan},
-                                {"markdown", PageFormat::kMarkdown}},
-            To(&Options::page)),
+      OneOf("FORMAT", To(&Options::page),
+            {{"text", PageFormat::kText},
+             {"man", PageFormat::kMan},
+             {"markdown", PageFormat::kMarkdown}}),
       "format of the page, by default text; markdown prints all pages"},
      {"--out", File(To(&Options::out)), "folder to write the man pages of all verbs to"}}};
 
@@ -376,7 +382,7 @@ const Store<std::string> kJobs = [](Options& options, std::string name) {
 
 // Optional, because --spec or --again can replace it.
 const Argument kExperiment = {
-    OneOf<Spec::Experiment>("EXPERIMENT", EnumChoices<Spec::Experiment>(),
+    OneOf<Spec::Experiment>("EXPERIMENT",
                             [](Options& o, Spec::Experiment x) { o.spec.set_experiment(x); }),
     "the experiment to run", Argument::kOptional};
 const Argument kOneJob = {Job(kJobs), "ensembleJobs/ID, or the ID alone"};
@@ -636,12 +642,11 @@ std::vector<Verb> AllVerbs() {
       {"completion",
        "print a script that completes command lines in a shell",
        "The script also completes names of jobs if a server is running.",
-       {{OneOf("SHELL",
-               Choices<Completion>{{"bash", Completion::kBash},
-                                   {"zsh", Completion::kZsh},
-                                   {"fish", Completion::kFish},
-                                   {"words", Completion::kWords}},
-               To(&Options::completion)),
+       {{OneOf("SHELL", To(&Options::completion),
+               {{"bash", Completion::kBash},
+                {"zsh", Completion::kZsh},
+                {"fish", Completion::kFish},
+                {"words", Completion::kWords}}),
          "the shell; only the scripts use 'words'"},
         {Words("WORD", kWords), "after --: the words so far; the last word is completed",
          Argument::kRest}},
@@ -686,35 +691,29 @@ const FlagGroup& ServerFlags() { return kServer; }
 const FlagGroup& TargetFlags() { return kTarget; }
 const std::vector<const FlagGroup*>& QuestionFlags() { return kQuestion; }
 
-const std::vector<Remark>& ExitCodes() {
-  static const auto* const codes = new std::vector<Remark>{
-      {"0", "success"},
-      {"2",
-       "wrong usage or an invalid argument, a job too large for the server, or output that cannot "
-       "be written"},
-      {"3", "no server answers, or the server is busy: retry later"},
-      {"4", "the job failed or was cancelled, or its state does not permit the call"},
-      {"5", "no such job, or no result of that point"},
-      {"6", "not authenticated or not authorised"},
-      {"130", "interrupted"}};
-  return *codes;
-}
+const std::vector<Remark> kExitCodes = {
+    {"0", "success"},
+    {"2",
+     "wrong usage or an invalid argument, a job too large for the server, or output that cannot "
+     "be written"},
+    {"3", "no server answers, or the server is busy: retry later"},
+    {"4", "the job failed or was cancelled, or its state does not permit the call"},
+    {"5", "no such job, or no result of that point"},
+    {"6", "not authenticated or not authorised"},
+    {"130", "interrupted"}};
 
-const std::vector<Remark>& Files() {
-  static const auto* const files = new std::vector<Remark>{
-      {"~/.config/ballpiston/config.toml",
-       "values for flags that are not given. A line such as format = \"csv\" applies to every verb "
-       "that has the flag; below [run] it applies only to run. Environment variables override the "
-       "file, and flags override both; an empty variable counts as not set. XDG_CONFIG_HOME "
-       "replaces ~/.config"},
-      {"~/.local/state/ballpiston",
-       "jobs, log and socket of the private server. XDG_STATE_HOME replaces ~/.local/state. "
-       "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"},
-      {"python3",
-       "draws figures; /usr/bin/python3 if the one in PATH lacks their packages. BALLPISTON_PYTHON "
-       "is another Python to start"}};
-  return *files;
-}
+const std::vector<Remark> kFiles = {
+    {"~/.config/ballpiston/config.toml",
+     "values for flags that are not given. A line such as format = \"csv\" applies to every verb "
+     "that has the flag; below [run] it applies only to run. Environment variables override the "
+     "file, and flags override both; an empty variable counts as not set. XDG_CONFIG_HOME "
+     "replaces ~/.config"},
+    {"~/.local/state/ballpiston",
+     "jobs, log and socket of the private server. XDG_STATE_HOME replaces ~/.local/state. "
+     "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"},
+    {"python3",
+     "draws figures; /usr/bin/python3 if the one in PATH lacks their packages. BALLPISTON_PYTHON "
+     "is another Python to start"}};
 
 bool IsOf(const FlagGroup& group, const Flag& flag) {
   return std::any_of(group.flags.begin(), group.flags.end(),

@@ -81,8 +81,7 @@ inline const Choices<ProgressStyle> kProgressStyles = {{"auto", ProgressStyle::k
 struct Remark {
   std::string name, text;
 };
-const std::vector<Remark>& ExitCodes();
-const std::vector<Remark>& Files();
+extern const std::vector<Remark> kExitCodes, kFiles;
 
 bool IsOf(const FlagGroup& group, const Flag& flag);
 

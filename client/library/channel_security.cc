@@ -26,8 +26,6 @@ namespace {
 constexpr size_t kMaxFileBytes = size_t{1} << 20;
 constexpr size_t kLongestToken = 256;
 
-enum class Secret { kNo, kYes };
-
 absl::Status CannotUse(const std::string& what, const std::string& path, absl::string_view why) {
   return absl::InvalidArgumentError(absl::StrCat("the ", what, " ", path, " ", why));
 }
@@ -43,18 +41,17 @@ absl::Status CheckOwnersOnly(const std::string& what, const std::string& path, i
       what, path, status.st_mode & 07777));
 }
 
-// Reads a regular file or a pipe to its end. `what` names the file in messages.
+// Reads a regular file or a pipe to its end. `what` names the file in messages. Only its owner may
+// be able to read a secret file.
 absl::StatusOr<std::string> ReadFile(const std::string& what, const std::string& path,
-                                     Secret secret) {
+                                     bool is_secret) {
   const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) {
     return CannotUse(what, path, absl::StrCat("cannot be opened: ", std::strerror(errno)));
   }
   const absl::Cleanup closed = [descriptor] { close(descriptor); };
-  if (secret == Secret::kYes) {
-    const absl::Status own = CheckOwnersOnly(what, path, descriptor);
-    if (!own.ok()) return own;
-  }
+  const absl::Status own = is_secret ? CheckOwnersOnly(what, path, descriptor) : absl::OkStatus();
+  if (!own.ok()) return own;
   std::string text;
   char buffer[1 << 14];
   while (text.size() <= kMaxFileBytes) {
@@ -68,30 +65,22 @@ absl::StatusOr<std::string> ReadFile(const std::string& what, const std::string&
   return CannotUse(what, path, absl::StrCat("is longer than ", kMaxFileBytes, " bytes"));
 }
 
-// Checks that the file looks like PEM. Without this check gRPC would only report that the
-// connection failed.
-absl::StatusOr<std::string> ReadPem(const std::string& what, const std::string& path,
-                                    absl::string_view kind) {
-  if (path.empty()) return std::string();
-  absl::StatusOr<std::string> text = ReadFile(what, path, Secret::kNo);
-  if (!text.ok() || absl::StrContains(*text, kind)) return text;
-  return CannotUse(what, path, absl::StrCat("holds no \"", kind, "\" (a PEM file is needed)"));
-}
-
 bool IsToken(absl::string_view text) {
   return !text.empty() && text.size() <= kLongestToken &&
          std::all_of(text.begin(), text.end(),
                      [](unsigned char c) { return absl::ascii_isgraph(c); });
 }
 
+// Empty if there is none.
 absl::StatusOr<std::string> Token(const ChannelSecurity& security) {
   std::string token = security.token;
   if (!security.token_file.empty()) {
-    absl::StatusOr<std::string> text = ReadFile("token file", security.token_file, Secret::kYes);
+    absl::StatusOr<std::string> text =
+        ReadFile("token file", security.token_file, /*is_secret=*/true);
     if (!text.ok()) return text.status();
     token = std::string(absl::StripAsciiWhitespace(*text));
   }
-  if (IsToken(token)) return token;
+  if (IsToken(token) || !security.HasToken()) return token;
   return absl::InvalidArgumentError(absl::StrCat(
       security.token_file.empty() ? "the token" : "the token file " + security.token_file,
       " must be one word of 1 to ", kLongestToken, " printable characters"));
@@ -125,12 +114,16 @@ std::shared_ptr<grpc::ChannelCredentials> LoopbackCredentials(const std::string&
           std::make_unique<LoopbackToken>(address, token), GRPC_SECURITY_NONE));
 }
 
-absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> TlsCredentials(
-    const ChannelSecurity& security) {
-  auto ca = ReadPem("authority file", security.ca, "-----BEGIN CERTIFICATE-----");
-  if (!ca.ok()) return ca.status();
+absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> TlsCredentials(const std::string& ca) {
+  constexpr char kWhat[] = "authority file", kBegin[] = "-----BEGIN CERTIFICATE-----";
   grpc::SslCredentialsOptions options;
-  options.pem_root_certs = *std::move(ca);
+  if (ca.empty()) return grpc::SslCredentials(options);  // trusts the system's authorities
+  absl::StatusOr<std::string> text = ReadFile(kWhat, ca, /*is_secret=*/false);
+  if (!text.ok()) return text.status();
+  if (!absl::StrContains(*text, kBegin)) {  // gRPC would only report that the connection failed
+    return CannotUse(kWhat, ca, absl::StrCat("holds no \"", kBegin, "\" (a PEM file is needed)"));
+  }
+  options.pem_root_certs = *std::move(text);
   return grpc::SslCredentials(options);
 }
 
@@ -159,19 +152,15 @@ absl::Status CheckSecurity(const ChannelSecurity& security, absl::string_view ad
 
 absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> CredentialsOf(
     const ChannelSecurity& security, const std::string& address) {
-  std::string token;
-  if (security.HasToken()) {
-    absl::StatusOr<std::string> read = Token(security);
-    if (!read.ok()) return read.status();
-    token = *std::move(read);
-  }
+  const absl::StatusOr<std::string> token = Token(security);
+  if (!token.ok()) return token.status();
   if (!security.HasTls()) {
-    return IsLoopback(address) ? LoopbackCredentials(address, token)
+    return IsLoopback(address) ? LoopbackCredentials(address, *token)
                                : grpc::InsecureChannelCredentials();
   }
-  auto channel = TlsCredentials(security);
-  if (!channel.ok() || token.empty()) return channel;
-  return grpc::CompositeChannelCredentials(*channel, grpc::AccessTokenCredentials(token));
+  auto channel = TlsCredentials(security.ca);
+  if (!channel.ok() || token->empty()) return channel;
+  return grpc::CompositeChannelCredentials(*channel, grpc::AccessTokenCredentials(*token));
 }
 
 }  // namespace ballpiston::client

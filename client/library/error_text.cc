@@ -1,7 +1,5 @@
 #include "client/library/error_text.h"
 
-#include <iterator>
-#include <optional>
 #include <utility>
 
 #include "absl/strings/cord.h"
@@ -10,37 +8,21 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
-#include "google/rpc/error_details.pb.h"
 
 namespace ballpiston::client {
 namespace {
 
+// The first detail of this type; an empty one if there is none.
 template <typename Detail>
-std::optional<Detail> Find(const google::rpc::Status& status) {
+Detail Find(const google::rpc::Status& status) {
   for (const google::protobuf::Any& any : status.details()) {
     if (Detail detail; any.UnpackTo(&detail)) return detail;
   }
-  return std::nullopt;
+  return Detail();
 }
 
-std::vector<FieldViolation> ViolationsOf(const google::rpc::Status& status) {
-  std::vector<FieldViolation> all;
-  for (const google::protobuf::Any& any : status.details()) {
-    google::rpc::BadRequest request;
-    if (!any.UnpackTo(&request)) continue;
-    for (const auto& violation : request.field_violations()) {
-      all.push_back({violation.field(), violation.description()});
-    }
-  }
-  return all;
-}
-
-std::string LinesOf(const std::vector<FieldViolation>& violations) {
-  std::string lines;
-  for (const auto& [field, description] : violations) {
-    absl::StrAppend(&lines, "\n  ", field, ": ", description);
-  }
-  return lines;
+std::string TextOf(const google::rpc::BadRequest::FieldViolation& violation) {
+  return absl::StrCat(violation.field(), ": ", violation.description());
 }
 
 int LeftOut(const google::rpc::ErrorInfo& info) {
@@ -51,17 +33,15 @@ int LeftOut(const google::rpc::ErrorInfo& info) {
 }
 
 std::string Text(const std::string& message, const google::rpc::Status& status) {
-  const auto info = Find<google::rpc::ErrorInfo>(status).value_or(google::rpc::ErrorInfo());
+  const auto info = Find<google::rpc::ErrorInfo>(status);
   const std::string reason = info.reason().empty() ? "" : absl::StrCat(" (", info.reason(), ")");
-  const std::vector<FieldViolation> violations = ViolationsOf(status);
-  const int left_out = LeftOut(info);
-  const auto count = std::ssize(violations) + left_out;
+  const auto request = Find<google::rpc::BadRequest>(status);
+  const int left_out = LeftOut(info), count = request.field_violations_size() + left_out;
   if (count == 0) return message + reason;
-  if (count == 1 && left_out == 0) {
-    return absl::StrCat(violations[0].field, ": ", violations[0].description, reason);
-  }
-  return absl::StrCat("not valid, ", count, " violations", reason, ":", LinesOf(violations),
-                      left_out > 0 ? absl::StrCat("\n  and ", left_out, " more") : "");
+  if (count == 1 && left_out == 0) return TextOf(request.field_violations(0)) + reason;
+  std::string text = absl::StrCat("not valid, ", count, " violations", reason, ":");
+  for (const auto& violation : request.field_violations()) text += "\n  " + TextOf(violation);
+  return left_out > 0 ? absl::StrCat(text, "\n  and ", left_out, " more") : text;
 }
 
 // gRPC 1.51 writes "Received message larger than max (SIZE vs. MOST)", or "Sent ...". If the server
@@ -106,19 +86,16 @@ google::rpc::Status ErrorDetails(const absl::Status& status) {
 }
 
 std::string ErrorReason(const absl::Status& status) {
-  const auto info = Find<google::rpc::ErrorInfo>(ErrorDetails(status));
-  return info ? info->reason() : "";
+  return Find<google::rpc::ErrorInfo>(ErrorDetails(status)).reason();
 }
 
 absl::Duration RetryDelay(const absl::Status& status) {
-  const auto retry = Find<google::rpc::RetryInfo>(ErrorDetails(status));
-  if (!retry) return absl::ZeroDuration();
-  const auto& delay = retry->retry_delay();
+  const auto delay = Find<google::rpc::RetryInfo>(ErrorDetails(status)).retry_delay();
   return absl::Seconds(delay.seconds()) + absl::Nanoseconds(delay.nanos());
 }
 
-std::vector<FieldViolation> ErrorViolations(const absl::Status& status) {
-  return ViolationsOf(ErrorDetails(status));
+google::rpc::BadRequest ErrorViolations(const absl::Status& status) {
+  return Find<google::rpc::BadRequest>(ErrorDetails(status));
 }
 
 }  // namespace ballpiston::client

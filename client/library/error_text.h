@@ -18,10 +18,10 @@
 #include <grpcpp/support/status.h>
 
 #include <string>
-#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/time/time.h"
+#include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 
 namespace ballpiston::client {
@@ -46,9 +46,6 @@ std::string ErrorReason(const absl::Status& status);
 absl::Duration RetryDelay(const absl::Status& status);
 
 // The invalid fields of the request, by their paths: spec.grid.rho[0].
-struct FieldViolation {
-  std::string field, description;
-};
-std::vector<FieldViolation> ErrorViolations(const absl::Status& status);
+google::rpc::BadRequest ErrorViolations(const absl::Status& status);
 
 }  // namespace ballpiston::client

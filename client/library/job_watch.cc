@@ -77,80 +77,13 @@ void AwaitConnection(grpc::ChannelInterface& channel, const std::stop_token& sto
   }
 }
 
-// Its client starts no server: the watch itself retries.
-class JobWatch {
- public:
-  JobWatch(const Client& client, const WatchCallbacks& callbacks, const WatchOptions& options,
-           std::stop_token stop, const std::function<void()>& reconnect)
-      : client_(client),
-        callbacks_(callbacks),
-        options_(options),
-        stop_(std::move(stop)),
-        reconnect_(reconnect) {}
-
-  absl::StatusOr<v1::EnsembleJob> Follow(const std::string& name) {
-    request_.set_name(name);
-    while (true) {
-      const absl::Status end = ReadStream();
-      if (ended_) return *std::move(ended_);
-      if (stop_.stop_requested()) return Stopped();
-      if (!IsBrokenStream(end)) return end;
-      if (absl::Status wait = WaitToReattach(end); !wait.ok()) return wait;
-    }
-  }
-
- private:
-  static absl::Status Stopped() { return absl::CancelledError("the watch was stopped"); }
-
-  absl::Status ReadStream() {
-    v1::WatchEnsembleJobResponse message;
-    const auto on_message = [&] {
-      Handle(message);
-      return true;
-    };
-    const absl::Status status =
-        client_.Call(request_, message, on_message, absl::InfiniteDuration(), stop_);
-    if (!status.ok()) return status;
-    return absl::UnavailableError("the server ended the watch before the job's end");
-  }
-
-  void Handle(const v1::WatchEnsembleJobResponse& message) {
-    if (ended_) return;  // nothing after the terminal state is shown
-    pace_.Heard();
-    if (!message.resume_token().empty()) request_.set_resume_token(message.resume_token());
-    if (message.has_job()) HandleJob(message.job());
-    if (message.has_snapshot() && callbacks_.on_snapshot)
-      callbacks_.on_snapshot(message.snapshot());
-  }
-
-  void HandleJob(const v1::EnsembleJob& job) {
-    if (HasEnded(job.state())) ended_ = job;
-    if (callbacks_.on_job) callbacks_.on_job(job);
-  }
-
-  absl::Status WaitToReattach(const absl::Status& why) {
-    const std::optional<absl::Duration> pause = pace_.NextPause(RetryDelay(why));
-    if (!pause && absl::IsResourceExhausted(why)) return why;  // the server answers, but is busy
-    if (!pause) {
-      return absl::UnavailableError(absl::StrCat("gave up watching after ",
-                                                 absl::FormatDuration(options_.give_up_after),
-                                                 " without a connection: ", why.message()));
-    }
-    if (callbacks_.on_disconnect) callbacks_.on_disconnect(why, *pause);
-    if (!Pause(*pause, stop_)) return Stopped();
-    reconnect_();
-    return absl::OkStatus();
-  }
-
-  const Client client_;
-  const WatchCallbacks& callbacks_;
-  const WatchOptions& options_;
-  const std::stop_token stop_;
-  const std::function<void()>& reconnect_;
-  v1::WatchEnsembleJobRequest request_;
-  std::optional<v1::EnsembleJob> ended_;
-  ReattachPace pace_{options_};
-};
+// The error of a watch that gives up. A busy server answers: then the error is its own.
+absl::Status GaveUp(const absl::Status& why, const WatchOptions& options) {
+  if (absl::IsResourceExhausted(why)) return why;
+  return absl::UnavailableError(absl::StrCat("gave up watching after ",
+                                             absl::FormatDuration(options.give_up_after),
+                                             " without a connection: ", why.message()));
+}
 
 }  // namespace
 
@@ -163,11 +96,35 @@ absl::StatusOr<v1::EnsembleJob> Client::Watch(const std::string& name,
                                               const WatchCallbacks& callbacks,
                                               const WatchOptions& options,
                                               std::stop_token stop) const {
-  const auto reconnect = [&] {
+  const Client single(channel_);  // it starts no server: the watch itself retries
+  v1::WatchEnsembleJobRequest request;
+  request.set_name(name);
+  v1::WatchEnsembleJobResponse message;
+  std::optional<v1::EnsembleJob> ended;
+  ReattachPace pace(options);
+  const auto on_message = [&] {
+    if (ended) return true;  // nothing after the terminal state is shown
+    pace.Heard();
+    if (!message.resume_token().empty()) request.set_resume_token(message.resume_token());
+    if (message.has_job() && HasEnded(message.job().state())) ended = message.job();
+    if (message.has_job() && callbacks.on_job) callbacks.on_job(message.job());
+    if (message.has_snapshot() && callbacks.on_snapshot) callbacks.on_snapshot(message.snapshot());
+    return true;
+  };
+  const absl::Status stopped = absl::CancelledError("the watch was stopped");
+  while (true) {
+    absl::Status end = single.Call(request, message, on_message, absl::InfiniteDuration(), stop);
+    end.Update(absl::UnavailableError("the server ended the watch before the job's end"));
+    if (ended) return *std::move(ended);
+    if (stop.stop_requested()) return stopped;
+    if (!IsBrokenStream(end)) return end;
+    const std::optional<absl::Duration> pause = pace.NextPause(RetryDelay(end));
+    if (!pause) return GaveUp(end, options);
+    if (callbacks.on_disconnect) callbacks.on_disconnect(end, *pause);
+    if (!Pause(*pause, stop)) return stopped;
     if (revival_) revival_().IgnoreError();  // the next attempt reports that there is no server
     AwaitConnection(*channel_, stop);
-  };
-  return JobWatch(Client(channel_), callbacks, options, stop, reconnect).Follow(name);
+  }
 }
 
 }  // namespace ballpiston::client

@@ -1,7 +1,5 @@
 #include <string>
-#include <utility>
 
-#include "absl/functional/function_ref.h"
 #include "absl/strings/str_cat.h"
 #include "client/output/answers.h"
 #include "client/output/field_text.h"
@@ -18,12 +16,6 @@ Cells KernelTitles(const std::vector<double>& outgoing) {
   return titles;
 }
 
-Cells KernelCells(const v1::EnergyAnalytics& energy, absl::FunctionRef<std::string(double)> text) {
-  Cells cells;
-  for (const double w : energy.kernel()) cells.push_back(text(w));
-  return cells;
-}
-
 void PrintCsv(const v1::EvaluatePairsResponse& response, const std::vector<double>& outgoing,
               std::ostream& out) {
   const Cells pairs = PlainFields(*v1::PairAnalytics::descriptor()),
@@ -37,8 +29,9 @@ void PrintCsv(const v1::EvaluatePairsResponse& response, const std::vector<doubl
       out << CsvRow(Joined({cells, no_energy, no_averages}));
     }
     for (const auto& energy : pair.energies()) {
-      out << CsvRow(Joined(
-          {cells, FieldTexts(energy, energies), KernelCells(energy, &ExactText), no_averages}));
+      Cells kernel;
+      for (const double w : energy.kernel()) kernel.push_back(ExactText(w));
+      out << CsvRow(Joined({cells, FieldTexts(energy, energies), kernel, no_averages}));
     }
     for (const auto& row : pair.canonical()) {
       out << CsvRow(Joined({cells, no_energy, FieldTexts(row, averages)}));
@@ -68,12 +61,18 @@ void PrintQuantities(const v1::PairAnalytics& pair, std::ostream& out) {
 }
 
 // A row for each message, with its kernel if it has one.
-template <typename Rows, typename Kernel>
-void PrintRows(const Rows& rows, const Cells& kernel_titles, std::ostream& out, Kernel kernel) {
+template <typename Rows>
+void PrintRows(const Rows& rows, const Cells& kernel_titles, std::ostream& out) {
   if (rows.empty()) return;
   const Cells columns = PlainFields(*rows[0].GetDescriptor());
   TextTable table(Joined({columns, kernel_titles}));
-  for (const auto& row : rows) table.AddRow(Joined({TableCells(row, columns), kernel(row)}));
+  for (const auto& row : rows) {
+    Cells cells = TableCells(row, columns);
+    if constexpr (requires { row.kernel(); }) {
+      for (const double w : row.kernel()) cells.push_back(TableCell(w));
+    }
+    table.AddRow(cells);
+  }
   out << '\n';
   table.Print(out, 2);
 }
@@ -85,9 +84,8 @@ void PrintTable(const v1::EvaluatePairsResponse& response, const std::vector<dou
     out << separator;
     separator = "\n";
     PrintQuantities(pair, out);
-    PrintRows(pair.energies(), KernelTitles(outgoing), out,
-              [](const auto& energy) { return KernelCells(energy, &TableCell); });
-    PrintRows(pair.canonical(), {}, out, [](const auto&) { return Cells(); });
+    PrintRows(pair.energies(), KernelTitles(outgoing), out);
+    PrintRows(pair.canonical(), {}, out);
   }
 }
 
@@ -95,16 +93,10 @@ void PrintTable(const v1::EvaluatePairsResponse& response, const std::vector<dou
 
 void PrintAnalytics(const v1::EvaluatePairsResponse& response,
                     const std::vector<double>& outgoing_epsilon, Format format, std::ostream& out) {
-  switch (format) {
-    case Format::kTable:
-      return PrintTable(response, outgoing_epsilon, out);
-    case Format::kJson:
-      return PrintJsonDocument("points", response.points(), out);
-    case Format::kJsonl:
-      return PrintJsonLines(response.points(), out);
-    default:
-      return PrintCsv(response, outgoing_epsilon, out);
-  }
+  if (format == Format::kTable) return PrintTable(response, outgoing_epsilon, out);
+  if (format == Format::kCsv) return PrintCsv(response, outgoing_epsilon, out);
+  if (format == Format::kJsonl) return PrintJsonLines(response.points(), out);
+  PrintJsonDocument("points", response.points(), out);
 }
 
 }  // namespace ballpiston::client

@@ -59,9 +59,6 @@ void PrintJobs(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, Format 
 // KEY=VALUE, by key, with blanks between.
 std::string LabelsText(const v1::EnsembleJob& job);
 
-// The view to request for PrintJobs: it includes the grids if the format shows them.
-v1::ListEnsembleJobsRequest::View JobViewFor(Format format);
-
 // A server's status. The table shows the time since the server's start, counted from `now`. CSV is
 // one row, without the fields that are messages.
 void PrintStatus(const v1::ServerStatus& status, absl::Time now, Format format, std::ostream& out);

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -83,21 +82,10 @@ std::string LabelsText(const v1::EnsembleJob& job) {
 
 void PrintJobs(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, Format format,
                std::ostream& out) {
-  switch (format) {
-    case Format::kTable:
-      return PrintTable(jobs, now, out);
-    case Format::kJson:
-      return PrintJsonDocument("jobs", jobs, out);
-    case Format::kJsonl:
-      return PrintJsonLines(jobs, out);
-    default:
-      return PrintCsv(jobs, out);
-  }
-}
-
-v1::ListEnsembleJobsRequest::View JobViewFor(Format format) {
-  const bool is_json = format == Format::kJson || format == Format::kJsonl;
-  return is_json ? v1::ListEnsembleJobsRequest::FULL : v1::ListEnsembleJobsRequest::BASIC;
+  if (format == Format::kTable) return PrintTable(jobs, now, out);
+  if (format == Format::kCsv) return PrintCsv(jobs, out);
+  if (format == Format::kJsonl) return PrintJsonLines(jobs, out);
+  PrintJsonDocument("jobs", jobs, out);
 }
 
 }  // namespace ballpiston::client

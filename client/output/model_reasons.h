@@ -11,35 +11,38 @@
 #include <ostream>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "ballpiston/v1/spec.pb.h"
+#include "client/output/field_text.h"
+#include "client/output/spelling.h"
 
 namespace ballpiston::client {
 
 // The model's name on the command line; "none" if no model can be used.
-std::string ModelName(v1::EnsembleSpec::Model model);
+inline std::string ModelName(v1::EnsembleSpec::Model model) {
+  return model == v1::EnsembleSpec::MODEL_UNSPECIFIED ? "none" : Spelling(model);
+}
 
-class ModelReasons {
- public:
-  // Adds nothing if there is no reason: then the user chose the model.
-  void Add(const v1::PointParameters& parameters, v1::EnsembleSpec::Model model,
-           const std::string& reason);
-
-  // Prints the reasons in the order of their first points.
-  void Print(std::ostream& out) const;
-
- private:
-  struct Reason {
-    std::string model, text;
-    v1::PointParameters first_point;
-    int points = 0;
-  };
-
-  std::string Line(const Reason& reason) const;
-
-  std::vector<Reason> reasons_;
-  std::map<std::pair<std::string, std::string>, size_t> positions_;  // by model and text
-};
+// In the order of their first points. `points` are PointResults or PointPlans; one without a reason
+// has the model that the user chose.
+template <typename Points>
+void PrintModelReasons(const Points& points, std::ostream& out) {
+  std::map<std::pair<std::string, std::string>, int> counts;  // of points, by model and reason
+  for (const auto& point : points) {
+    if (!point.reason().empty()) ++counts[{ModelName(point.model()), point.reason()}];
+  }
+  const bool is_only = counts.size() == 1;
+  for (const auto& point : points) {
+    const auto first = counts.extract({ModelName(point.model()), point.reason()});
+    if (first.empty()) continue;  // printed already, or no reason
+    out << first.key().first;
+    if (!is_only) {
+      const int others = first.mapped() - 1;
+      out << " (" << ParameterText(point.parameters())
+          << (others > 0 ? " and " + Counted(others, "more point") : "") << ")";
+    }
+    out << ": " << point.reason() << '\n';
+  }
+}
 
 }  // namespace ballpiston::client

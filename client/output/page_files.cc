@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include "absl/status/status.h"
@@ -32,36 +33,28 @@ std::string TypeOf(const fs::path& file) {
   return type == types->end() ? "" : type->second;
 }
 
-// The text with which a page refers to a file, and the tags around the content that replaces it.
-struct Reference {
-  absl::string_view before, after;
-  absl::string_view begin, end;
-};
-
-constexpr Reference kReferences[] = {
-    {"<link rel=\"stylesheet\" href=\"", "\">", "<style>\n", "</style>"},
-    {"<script src=\"", "\" defer></script>", "<script>\n", "</script>"}};
-
 absl::StatusOr<std::string> ContentOf(const PageFiles& files, const std::string& name) {
   const auto file = files.find(name);
   if (file != files.end()) return file->second.content;
   return absl::FailedPreconditionError(absl::StrCat("the page's file ", name, " is not installed"));
 }
 
-absl::StatusOr<std::string> WithFilesInside(const PageFiles& files, absl::string_view page,
-                                            const Reference& reference) {
+// The page with the contents of the files that it refers to.
+absl::StatusOr<std::string> WithFilesInside(const PageFiles& files, const std::string& page) {
+  static const std::regex reference(
+      "<link rel=\"stylesheet\" href=\"(.*?)\">|<script src=\"(.*?)\" defer></script>");
   std::string result;
-  while (true) {
-    const size_t at = page.find(reference.before);
-    absl::StrAppend(&result, page.substr(0, at));
-    if (at == absl::string_view::npos) return result;
-    page.remove_prefix(at + reference.before.size());
-    const size_t end = page.find(reference.after);
-    const auto content = ContentOf(files, std::string(page.substr(0, end)));
+  auto rest = page.begin();
+  for (std::smatch found; std::regex_search(rest, page.end(), found, reference);) {
+    const bool is_style = found[1].matched;
+    const auto content = ContentOf(files, found[is_style ? 1 : 2]);
     if (!content.ok()) return content.status();
-    absl::StrAppend(&result, reference.begin, *content, reference.end);
-    page.remove_prefix(end + reference.after.size());
+    absl::StrAppend(&result, std::string(rest, found[0].first),
+                    is_style ? "<style>\n" : "<script>\n", *content,
+                    is_style ? "</style>" : "</script>");
+    rest = found[0].second;
   }
+  return result.append(rest, page.end());
 }
 
 }  // namespace
@@ -83,9 +76,7 @@ absl::StatusOr<PageFiles> ReadPageFiles() {
 absl::StatusOr<std::string> OneFilePage(const PageFiles& files, const std::string& name,
                                         absl::string_view json) {
   absl::StatusOr<std::string> page = ContentOf(files, name);
-  for (const Reference& reference : kReferences) {
-    if (page.ok()) page = WithFilesInside(files, *page, reference);
-  }
+  if (page.ok()) page = WithFilesInside(files, *page);
   if (!page.ok()) return page;
   // Without "<" the JSON cannot contain the tag that ends the script.
   const std::string safe = absl::StrReplaceAll(json, {{"<", "\\u003c"}});

@@ -1,7 +1,5 @@
 #include <cmath>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -114,15 +112,13 @@ const v1::ModelPlan& ChosenModel(const v1::PointPlan& point) {
 void PrintChoices(const v1::PlanEnsembleJobResponse& plan, std::ostream& out) {
   const Cells parameters = ParametersInTable();
   TextTable table(Joined({parameters, {"model"}, kCostTitles}), {"model"}, OptionalParameters());
-  ModelReasons reasons;
   for (const v1::PointPlan& point : plan.points()) {
     const Cells cells = FieldTexts(point.parameters(), parameters, &TenDigits);
     table.AddRow(Joined({cells, {ModelName(point.model())}, CostCells(ChosenModel(point))}));
-    reasons.Add(point.parameters(), point.model(), point.reason());
   }
   out << '\n';
   table.Print(out);
-  reasons.Print(out);
+  PrintModelReasons(plan.points(), out);
 }
 
 void PrintTotal(const v1::PlanEnsembleJobResponse& plan, std::ostream& out) {
@@ -150,17 +146,10 @@ void PrintTable(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse&
 
 void PrintPlan(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan, Format format,
                std::ostream& out) {
-  switch (format) {
-    case Format::kTable:
-      return PrintTable(spec, plan, out);
-    case Format::kJson:
-      out << Json(plan) << '\n';
-      return;
-    case Format::kJsonl:
-      return PrintJsonLines(plan.points(), out);
-    default:
-      return PrintCsv(spec, plan, out);
-  }
+  if (format == Format::kTable) return PrintTable(spec, plan, out);
+  if (format == Format::kCsv) return PrintCsv(spec, plan, out);
+  if (format == Format::kJsonl) return PrintJsonLines(plan.points(), out);
+  out << Json(plan) << '\n';
 }
 
 }  // namespace ballpiston::client

@@ -12,7 +12,6 @@
 #include <mutex>
 #include <optional>
 #include <ostream>
-#include <string>
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"

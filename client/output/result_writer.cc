@@ -89,14 +89,9 @@ class TableWriter : public ResultWriter {
   explicit TableWriter(std::ostream& out) : out_(out) {}
 
   void Begin(const v1::EnsembleJob& job) override { job_ = job; }
-
-  void Add(const v1::PointResult& point) override {
-    models_.insert(Spelling(point.model()));
-    reasons_.Add(point.parameters(), point.model(), point.reason());
-    points_.push_back(point);
-  }
-
+  void Add(const v1::PointResult& point) override { points_.push_back(point); }
   void End() override {
+    for (const v1::PointResult& point : points_) models_.insert(Spelling(point.model()));
     out_ << Heading() << '\n';
     std::set<std::string> optional = OptionalParameters();
     optional.insert(kExtraColumns.begin(), kExtraColumns.end());
@@ -104,7 +99,7 @@ class TableWriter : public ResultWriter {
     TextTable table(Titles(), {"model", "estimate"}, optional);
     for (const v1::PointResult& point : points_) AddRows(point, table);
     if (!points_.empty()) table.Print(out_);
-    reasons_.Print(out_);
+    PrintModelReasons(points_, out_);
   }
 
  private:
@@ -148,27 +143,15 @@ class TableWriter : public ResultWriter {
   std::ostream& out_;
   v1::EnsembleJob job_;
   std::vector<v1::PointResult> points_;
-  std::set<std::string> models_;
-  ModelReasons reasons_;
+  std::set<std::string> models_;  // at the end
 };
 
 }  // namespace
 
 std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out, bool is_file) {
-  switch (format) {
-    case Format::kJson:
-    case Format::kJsonl:
-      return std::make_unique<JsonWriter>(out, /*is_document=*/format == Format::kJson);
-    case Format::kTable:
-      return std::make_unique<TableWriter>(out);
-    default:
-      return std::make_unique<CsvWriter>(out, is_file);
-  }
-}
-
-v1::ListResultsRequest::View ViewFor(Format format) {
-  const bool is_basic = format == Format::kTable || format == Format::kCsv;
-  return is_basic ? v1::ListResultsRequest::BASIC : v1::ListResultsRequest::FULL;
+  if (format == Format::kTable) return std::make_unique<TableWriter>(out);
+  if (format == Format::kCsv) return std::make_unique<CsvWriter>(out, is_file);
+  return std::make_unique<JsonWriter>(out, /*is_document=*/format == Format::kJson);
 }
 
 }  // namespace ballpiston::client

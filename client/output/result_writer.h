@@ -44,7 +44,7 @@ class ResultWriter {
 std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out,
                                               bool is_file = false);
 
-// The view to request: it includes histograms and curves if the format shows them.
-v1::ListResultsRequest::View ViewFor(Format format);
+// JSON shows the grids of jobs, and histograms and curves of points; the other formats do not.
+inline bool IsJson(Format format) { return format == Format::kJson || format == Format::kJsonl; }
 
 }  // namespace ballpiston::client

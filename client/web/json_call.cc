@@ -31,17 +31,19 @@ const google::protobuf::MethodDescriptor* FindMethod(absl::string_view path) {
   return is_spelled_so && absl::StartsWith(path, "ballpiston.v1.") ? method : nullptr;
 }
 
-absl::Status CallWithJson(const Client& client, const JsonCall& call, const JsonReceiver& receive) {
-  const Descriptor* const type = call.method->input_type();
+absl::Status CallWithJson(const Client& client, const google::protobuf::MethodDescriptor& method,
+                          const std::string& json, absl::Duration timeout,
+                          const JsonReceiver& receive) {
+  const Descriptor* const type = method.input_type();
   const std::unique_ptr<Message> request = New(type);
-  const absl::Status bad = ReadJson(call.request.empty() ? "{}" : call.request, *request);
+  const absl::Status bad = ReadJson(json.empty() ? "{}" : json, *request);
   if (!bad.ok()) {
     return absl::InvalidArgumentError(
         absl::StrCat("the request is not JSON of ", type->full_name(), ": ", bad.message()));
   }
-  const std::unique_ptr<Message> answer = New(call.method->output_type());
+  const std::unique_ptr<Message> answer = New(method.output_type());
   const auto on_answer = [&] { return receive(Json(*answer)); };
-  return client.Call(*request, *answer, on_answer, call.timeout);
+  return client.Call(*request, *answer, on_answer, timeout);
 }
 
 }  // namespace ballpiston::client

@@ -14,12 +14,6 @@
 
 namespace ballpiston::client {
 
-struct JsonCall {
-  const google::protobuf::MethodDescriptor* method;
-  std::string request;  // proto JSON; empty: {}
-  absl::Duration timeout = absl::InfiniteDuration();
-};
-
 // `path` is SERVICE/METHOD, for instance ballpiston.v1.EnsembleService/GetEnsembleJob. Null if the
 // API has no such method, or if its requests are a stream.
 const google::protobuf::MethodDescriptor* FindMethod(absl::string_view path);
@@ -28,8 +22,11 @@ const google::protobuf::MethodDescriptor* FindMethod(absl::string_view path);
 // with the status OK.
 using JsonReceiver = std::function<bool(const std::string& answer)>;
 
-// Blocks. Returns the server's error with the text of error_text.h; INVALID_ARGUMENT if the request
-// is not JSON of the method's request message. Thread-safe.
-absl::Status CallWithJson(const Client& client, const JsonCall& call, const JsonReceiver& receive);
+// `json`: the request; empty: {}. Blocks. Returns the server's error with the text of
+// error_text.h; INVALID_ARGUMENT if the request is not JSON of the method's request message.
+// Thread-safe.
+absl::Status CallWithJson(const Client& client, const google::protobuf::MethodDescriptor& method,
+                          const std::string& json, absl::Duration timeout,
+                          const JsonReceiver& receive);
 
 }  // namespace ballpiston::client

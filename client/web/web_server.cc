@@ -5,7 +5,6 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,6 +17,7 @@
 #include "client/library/quoted.h"
 #include "client/library/request_id.h"
 #include "client/web/connect_protocol.h"
+#include "client/web/json_call.h"
 
 namespace ballpiston::client {
 namespace {
@@ -93,10 +93,10 @@ bool AreEqual(absl::string_view a, absl::string_view b) {
   return difference == 0;
 }
 
-// The header Connect-Timeout-Ms; empty if the request lacks it.
-absl::StatusOr<std::optional<absl::Duration>> TimeoutOf(const Request& request) {
+// The header Connect-Timeout-Ms; `usual` if the request lacks it.
+absl::StatusOr<absl::Duration> TimeoutOf(const Request& request, absl::Duration usual) {
   const std::string text = request.get_header_value("Connect-Timeout-Ms");
-  if (text.empty()) return std::nullopt;
+  if (text.empty()) return usual;
   if (int64_t ms = 0; text.size() <= 10 && absl::SimpleAtoi(text, &ms) && ms > 0) {
     return absl::Milliseconds(ms);
   }
@@ -106,7 +106,8 @@ absl::StatusOr<std::optional<absl::Duration>> TimeoutOf(const Request& request) 
 
 class WebServer {
  public:
-  WebServer(const PageFiles& files, const GatewayCall& call) : files_(files), call_(call) {
+  WebServer(const PageFiles& files, const Connection& connection)
+      : files_(files), connection_(connection) {
     server_.new_task_queue = [] { return new httplib::ThreadPool(kMostConnections); };
     server_.set_payload_max_length(kMostRequestBytes);
     server_.set_error_handler(ExplainRefusal);
@@ -205,23 +206,29 @@ class WebServer {
           absl::UnimplementedError(absl::StrCat("no method ", path, " in this API")), 404,
           response);
     }
-    const std::string type = method->server_streaming() ? kStreamType : kUnaryType;
+    const bool is_stream = method->server_streaming();
+    const std::string type = is_stream ? kStreamType : kUnaryType;
     if (!HasType(request, type)) {
       return RespondError(absl::InvalidArgumentError(absl::StrCat("Content-Type must be ", type)),
                           415, response);
     }
-    const auto timeout = TimeoutOf(request);
+    const auto timeout = TimeoutOf(request, is_stream ? absl::InfiniteDuration() : kCallTimeout);
     if (!timeout.ok()) return RespondError(timeout.status(), response);
-    if (method->server_streaming()) {
-      PassOnStream({method, request.body, timeout->value_or(absl::InfiniteDuration())}, response);
-    } else {
-      PassOnUnary({method, request.body, timeout->value_or(kCallTimeout)}, response);
-    }
+    const Call call = [this, method, timeout](const std::string& json,
+                                              const JsonReceiver& receive) {
+      const auto& client = connection_.client;
+      return NameServer(CallWithJson(client, *method, json, *timeout, receive), connection_);
+    };
+    if (is_stream) return PassOnStream(call, request.body, response);
+    PassOnUnary(call, request.body, response);
   }
 
-  void PassOnUnary(const JsonCall& call, Response& response) const {
+  // A call of the server with a request in JSON.
+  using Call = std::function<absl::Status(const std::string& json, const JsonReceiver& receive)>;
+
+  static void PassOnUnary(const Call& call, const std::string& request, Response& response) {
     std::string answer;
-    const absl::Status status = call_(call, [&answer](const std::string& json) {
+    const absl::Status status = call(request, [&answer](const std::string& json) {
       answer = json;
       return true;
     });
@@ -230,36 +237,32 @@ class WebServer {
   }
 
   // Sends each answer as it arrives: the call runs while the response is written.
-  void PassOnStream(JsonCall call, Response& response) const {
+  void PassOnStream(const Call& call, const std::string& body, Response& response) const {
     const std::shared_ptr<void> room(nullptr, [this](void*) { --streams_; });
     if (++streams_ > kMostStreams) {
       return RespondError(absl::ResourceExhaustedError(absl::StrCat(
                               "the gateway has ", kMostStreams, " open streams; end one first")),
                           response);
     }
-    const auto request = OpenEnvelope(call.request);
-    response.set_chunked_content_provider(
-        kStreamType, [this, room, request, call](size_t, httplib::DataSink& sink) mutable {
-          bool is_whole = true;  // false after a failed write
-          const auto write = [&](const std::string& envelope) {
-            is_whole =
-                is_whole && sink.is_writable() && sink.write(envelope.data(), envelope.size());
-            return is_whole;
-          };
-          absl::Status status = request.status();
-          if (status.ok()) {
-            call.request = *request;
-            status = call_(call, [&](const std::string& json) { return write(Envelope(json)); });
-          }
-          // If a message could not be written, the stream must not look complete.
-          if (!write(EndOfStream(status))) return false;
-          sink.done();
-          return true;
-        });
+    const auto request = OpenEnvelope(body);
+    response.set_chunked_content_provider(kStreamType, [room, request, call](
+                                                           size_t, httplib::DataSink& sink) {
+      bool is_whole = true;  // false after a failed write
+      const auto write = [&](const std::string& envelope) {
+        is_whole = is_whole && sink.is_writable() && sink.write(envelope.data(), envelope.size());
+        return is_whole;
+      };
+      const auto send = [&](const std::string& json) { return write(Envelope(json)); };
+      const absl::Status status = request.ok() ? call(*request, send) : request.status();
+      // If a message could not be written, the stream must not look complete.
+      if (!write(EndOfStream(status))) return false;
+      sink.done();
+      return true;
+    });
   }
 
   const PageFiles& files_;
-  const GatewayCall& call_;
+  const Connection& connection_;
   const std::string token_ = NewRequestId();
   std::vector<std::string> hosts_;        // 127.0.0.1:PORT, localhost:PORT
   mutable std::atomic<int> streams_ = 0;  // open
@@ -268,9 +271,9 @@ class WebServer {
 
 }  // namespace
 
-absl::Status ServePage(const PageFiles& files, const GatewayCall& call, int port,
+absl::Status ServePage(const PageFiles& files, const Connection& connection, int port,
                        const std::function<void(const std::string& url)>& ready) {
-  WebServer server(files, call);
+  WebServer server(files, connection);
   if (absl::Status bound = server.Bind(port); !bound.ok()) return bound;
   ready(server.Url());
   server.Serve();

@@ -24,8 +24,8 @@
 #include <string>
 
 #include "absl/status/status.h"
+#include "client/command/connection.h"
 #include "client/output/page_files.h"
-#include "client/web/json_call.h"
 
 namespace ballpiston::client {
 
@@ -34,12 +34,9 @@ inline constexpr int kMostStreams = 24;
 // JSON is two to three times longer than gRPC's message, of which the server permits 4 MiB.
 inline constexpr size_t kMostRequestBytes = 16 << 20;
 
-using GatewayCall = std::function<absl::Status(const JsonCall&, const JsonReceiver&)>;
-
 // Serves until the program ends. Calls `ready` with the page's address and its token once the port
-// is open; `port` 0 chooses a free one. UNAVAILABLE if the port is not free. Several threads may
-// use `call` at the same time.
-absl::Status ServePage(const PageFiles& files, const GatewayCall& call, int port,
+// is open; `port` 0 chooses a free one. UNAVAILABLE if the port is not free.
+absl::Status ServePage(const PageFiles& files, const Connection& connection, int port,
                        const std::function<void(const std::string& url)>& ready);
 
 }  // namespace ballpiston::client

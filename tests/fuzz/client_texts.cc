@@ -1,7 +1,6 @@
 // What the client reads: its user's input, a server's answers, a browser's calls.
 #include "ballpiston/v1/ensemble.pb.h"
 #include "client/command/number_list.h"
-#include "client/command/spec_file.h"
 #include "client/library/error_text.h"
 #include "client/library/server_address.h"
 #include "client/output/json.h"
@@ -19,18 +18,15 @@ namespace {
 
 // The client's --spec FILE: proto JSON.
 void CheckSpecFile(const std::string& json) {
-  absl::StatusOr<v1::EnsembleSpec> spec = client::ParseSpec("FILE", json);
-  if (!spec.ok()) {
-    Require(absl::IsInvalidArgument(spec.status()), "what is wrong is the argument");
-    return Require(absl::StartsWith(spec.status().message(), "--spec FILE: "), "the flag is named");
-  }
-  const std::string printed = client::Json(*spec);
+  v1::EnsembleSpec spec, again;
+  const absl::Status read = client::ReadJson(json, spec);
+  if (!read.ok()) return Require(absl::IsInvalidArgument(read), "what is wrong is the argument");
+  const std::string printed = client::Json(spec);
   if (printed == "null") return;  // a budget beyond what JSON has
-  absl::StatusOr<v1::EnsembleSpec> again = client::ParseSpec("FILE", printed);
-  Require(again.ok(), "what is printed can be read");
-  server::Normalize(*again);  // which drops the signs of zeros, as the reader does of -0
-  server::Normalize(*spec);
-  Require(server::DeterministicBytes(*again) == server::DeterministicBytes(*spec),
+  Require(client::ReadJson(printed, again).ok(), "what is printed can be read");
+  server::Normalize(again);  // which drops the signs of zeros, as the reader does of -0
+  server::Normalize(spec);
+  Require(server::DeterministicBytes(again) == server::DeterministicBytes(spec),
           "the parsed specification equals the printed one");
 }
 

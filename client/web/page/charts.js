@@ -71,24 +71,21 @@
     c.stroke();
   }
 
-  // A logarithmic axis has no place for an end at or below 0.
-  function drawErrorBar(u, c, x, value, error) {
-    const y = (end) => u.valToPos(Math.max(end, u.scales.y.min), 'y', true);
-    drawLine(c, [x, y(value - error)], [x, y(value + error)]);
-  }
-
   function drawMeasured(u, line) {
     const c = u.ctx;
     c.fillStyle = c.strokeStyle = colourOf(line);
     c.lineWidth = 1.5 * pixels();
     c.setLineDash(line.kind === 'limit' ? [6 * pixels(), 3 * pixels()] : []);
     const radius = SYMBOL_RADIUS * pixels();
+    // A logarithmic axis has no place for an end of an error bar at or below 0.
+    const end = (y) => u.valToPos(Math.max(y, u.scales.y.min), 'y', true);
     for (let i = 0; i < line.x.length; ++i) {
       const x = line.x[i] + (line.shift ?? 0);
       if (!isNumber(line.y[i]) || x < u.scales.x.min || x > u.scales.x.max) continue;
+      const [value, error] = [line.y[i], line.error?.[i]];
       const left = u.valToPos(x, 'x', true);
-      if (line.error?.[i] > 0) drawErrorBar(u, c, left, line.y[i], line.error[i]);
-      const y = u.valToPos(line.y[i], 'y', true);
+      if (error > 0) drawLine(c, [left, end(value - error)], [left, end(value + error)]);
+      const y = u.valToPos(value, 'y', true);
       if (line.marks) drawLine(c, [left - 3 * radius, y], [left + 3 * radius, y]);
       else drawSymbol(c, line, left, y, radius);
     }
@@ -170,17 +167,16 @@
     };
   }
 
-  // Tick labels with enough digits to be different.
-  function tickTexts(u, ticks) {
-    return ticks.map((tick) => (tick === null ? '' : tickText(tick)));
-  }
-
+  // A tick label with enough digits to be different from the others.
   function tickText(tick) {
+    if (tick === null) return '';
     tick = Number(tick.toPrecision(10));
     const size = Math.abs(tick);
     if (size >= 1e5 || (size > 0 && size < 1e-4)) return tick.toExponential().replace('e+', 'e');
     return String(tick);
   }
+
+  const tickTexts = (u, ticks) => ticks.map(tickText);
 
   // Ticks of a log axis: 1, 2 and 5 of each decade; only 1, of some decades, if there are many;
   // else multiples of `step`, if less than two of those ticks are in the range.
@@ -240,18 +236,19 @@
     return isTooNarrow ? `The range of ${chart.xLabel} is too small for a picture.` : chart.note;
   }
 
+  // The value of the line at x, with its error; empty if it has none.
+  function textAt(line, x) {
+    const i = line.x.indexOf(x);
+    return isNumber(line.y[i]) ? withError(line.y[i], line.error?.[i]) : '';
+  }
+
   function tableOf(chart) {
     const columns = ballpiston.numberColumns(chart.xLabel, ...chart.lines.map(({label}) => label));
-    const values = aligned(chart.lines);
-    const errors = chart.lines.map((line) => new Map(line.x.map((x, i) => [x, line.error?.[i]])));
-    const step = Math.max(1, Math.ceil(values[0].length / MOST_TABLE_ROWS));
-    const rows = values[0]
-      .map((_, i) => i)
-      .filter((i) => i % step === 0)
-      .map((i) => [
-        valueText(values[0][i]),
-        ...chart.lines.map((_, k) => withError(values[k + 1][i], errors[k].get(values[0][i]))),
-      ]);
+    const [x] = aligned(chart.lines);
+    const step = Math.max(1, Math.ceil(x.length / MOST_TABLE_ROWS));
+    const rows = x
+      .filter((_, i) => i % step === 0)
+      .map((at) => [valueText(at), ...chart.lines.map((line) => textAt(line, at))]);
     const caption = step === 1 ? chart.title : `${chart.title}: every ${step}th row`;
     return ballpiston.table(caption, columns, rows, {class: 'compact'});
   }
@@ -372,22 +369,15 @@
     }
 
     read(u) {
+      const {lines, xLabel} = this.chart;
       let i = u.cursor.idx; // of the nearest x, but a step holds from its x to the next one
-      const isStep = this.chart.lines.some((line) => line.stepped || line.kind === 'steps');
+      const isStep = lines.some((line) => line.stepped || line.kind === 'steps');
       if (isStep && u.data[0][i] > u.posToVal(u.cursor.left, 'x')) i = Math.max(i - 1, 0);
-      this.readout.textContent = isNumber(i) ? this.valuesAt(u.data, i) : '';
-    }
-
-    valuesAt(data, i) {
-      const parts = this.chart.lines.map((line, k) => {
-        const at = line.x.indexOf(data[0][i]);
-        return at < 0 || !isNumber(line.y[at])
-          ? null
-          : `${line.label}: ${withError(line.y[at], line.error?.[at])}`;
-      });
-      return [`${this.chart.xLabel} = ${valueText(data[0][i])}`, ...parts.filter(Boolean)].join(
-        ' · ',
-      );
+      const x = u.data[0][i];
+      const parts = lines.map((line) => textAt(line, x) && `${line.label}: ${textAt(line, x)}`);
+      this.readout.textContent = isNumber(i)
+        ? [`${xLabel} = ${valueText(x)}`, ...parts.filter(Boolean)].join(' · ')
+        : '';
     }
 
     showNumbers() {

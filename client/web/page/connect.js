@@ -32,12 +32,8 @@
     return new CallError(json?.code ?? code, json?.message, reason);
   }
 
-  function noAnswer() {
-    return new CallError(
-      'unavailable',
-      `no answer from ${location.host}: ballpiston web no longer runs there`,
-    );
-  }
+  const unavailable = (message) => new CallError('unavailable', message);
+  const cutOff = () => unavailable('the answer ended too early');
 
   async function post(method, type, body, signal) {
     const token = ballpiston.token();
@@ -52,7 +48,7 @@
       });
     } catch (error) {
       if (signal?.aborted) throw error;
-      throw noAnswer();
+      throw unavailable(`no answer from ${location.host}: ballpiston web no longer runs there`);
     }
     if (response.ok) return response;
     const error = await response.json().catch(() => null);
@@ -68,7 +64,7 @@
       return await response.json();
     } catch (error) {
       if (signal?.aborted) throw error;
-      throw new CallError('unavailable', 'the answer ended too early');
+      throw cutOff();
     }
   }
 
@@ -80,33 +76,19 @@
     return bytes;
   }
 
-  // Reads a requested number of bytes from a stream.
-  class ByteReader {
-    constructor(reader) {
-      this.reader = reader;
-      this.known = new Uint8Array();
-    }
-
-    async take(count) {
-      while (this.known.length < count) {
-        const {value, done} = await this.reader.read();
-        if (done) throw new CallError('unavailable', 'the answer ended too early');
-        const longer = new Uint8Array(this.known.length + value.length);
-        longer.set(this.known);
-        longer.set(value, this.known.length);
-        this.known = longer;
+  // A function that reads a requested number of bytes from a stream.
+  function bytesOf(reader) {
+    let known = new Uint8Array();
+    return async (count) => {
+      while (known.length < count) {
+        const {value, done} = await reader.read();
+        if (done) throw cutOff();
+        known = new Uint8Array(await new Blob([known, value]).arrayBuffer());
       }
-      const taken = this.known.slice(0, count);
-      this.known = this.known.subarray(count);
+      const taken = known.slice(0, count);
+      known = known.subarray(count);
       return taken;
-    }
-  }
-
-  async function nextEnvelope(bytes) {
-    const header = await bytes.take(HEADER_BYTES);
-    const length = new DataView(header.buffer).getUint32(1);
-    const message = JSON.parse(new TextDecoder().decode(await bytes.take(length)));
-    return {isLast: (header[0] & LAST) !== 0, message};
+    };
   }
 
   // The messages of a stream. Reads only as fast as the caller uses them. The server then also
@@ -115,20 +97,18 @@
     const response = await post(method, 'application/connect+json', envelope(request), signal);
     const reader = response.body.getReader();
     try {
-      const bytes = new ByteReader(reader);
+      const take = bytesOf(reader);
       for (;;) {
-        const {isLast, message} = await nextEnvelope(bytes);
-        if (!isLast) {
-          yield message;
-        } else if (message.error) {
-          throw errorOf(message.error, 'unknown');
-        } else {
-          return;
-        }
+        const header = await take(HEADER_BYTES);
+        const text = await take(new DataView(header.buffer).getUint32(1));
+        const message = JSON.parse(new TextDecoder().decode(text));
+        if (message.error && header[0] & LAST) throw errorOf(message.error, 'unknown');
+        if (header[0] & LAST) return;
+        yield message;
       }
     } catch (error) {
       if (signal?.aborted || error instanceof CallError) throw error;
-      throw new CallError('unavailable', 'the answer ended too early');
+      throw cutOff();
     } finally {
       reader.cancel().catch(() => {});
     }

@@ -31,14 +31,13 @@
     history.replaceState(null, '', previous || '#jobs');
   }
 
-  const banner = () => document.getElementById('connection');
-
   let isFinal = false; // the banner shows an error that a later answer does not remove
 
   function say(text, isFinalError = false) {
+    const banner = document.getElementById('connection');
     isFinal = isFinalError;
-    if (banner().textContent !== text) banner().textContent = text;
-    banner().hidden = text === '';
+    if (banner.textContent !== text) banner.textContent = text;
+    banner.hidden = text === '';
   }
 
   // For a token of the page. The server may also require a token; ballpiston web sends that one.
@@ -51,10 +50,6 @@
 
   // Called when the reader acts.
   const clearBanner = () => say('');
-
-  function answered() {
-    if (!isFinal) say('');
-  }
 
   const failed = (error) => say(`${adviceFor(error)}The server says: ${error.message}`, true);
   function failedForNow(error) {
@@ -81,12 +76,8 @@
   }
 
   // Waits until `ms` have passed, or the browser is online again, or the signal is aborted.
-  async function pause(ms, signal) {
-    const over = new AbortController();
-    const timer = setTimeout(() => over.abort(), ms);
-    await until(window, 'online', AbortSignal.any([signal, over.signal]));
-    clearTimeout(timer);
-  }
+  const pause = (ms, signal) =>
+    until(window, 'online', AbortSignal.any([signal, AbortSignal.timeout(ms)]));
 
   // Waits until this tab is visible. A hidden tab sends no requests: a browser keeps only six
   // connections to the gateway, for all tabs together.
@@ -100,7 +91,7 @@
     let delay = FIRST_DELAY;
     const progress = () => {
       delay = FIRST_DELAY;
-      answered();
+      if (!isFinal) say('');
     };
     for (;;) {
       await visible(signal);

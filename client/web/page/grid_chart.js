@@ -29,37 +29,31 @@
   // A lattice NxM is not a number.
   const isAxis = (values) => [...values].every((value) => isNumber(Number(value)));
 
-  function axesOf(points) {
-    const varying = varyingParameters(points);
-    return Object.keys(varying)
-      .filter((name) => isAxis(varying[name]))
-      .sort((a, b) => varying[b].size - varying[a].size);
-  }
+  const axesOf = (points) =>
+    Object.entries(varyingParameters(points))
+      .filter(([, values]) => isAxis(values))
+      .sort(([, a], [, b]) => b.size - a.size)
+      .map(([name]) => name);
 
   const estimatesOf = (points) => [
     ...new Set(points.flatMap((point) => point.estimates.map((estimate) => estimate.name))),
   ];
 
-  // Groups of points whose parameters differ only in `axis`. The key is the group's label.
+  // Groups of points whose parameters differ only in `axis`: [[label, points], ...].
   function groups(points, axis) {
     const varying = varyingParameters(points);
-    const grouped = new Map();
-    for (const point of points) {
-      const pairs = parameterPairs(point.parameters);
-      const label = ballpiston.pairsText(pairs.filter(([name]) => name !== axis && varying[name]));
-      if (!grouped.has(label)) grouped.set(label, []);
-      grouped.get(label).push(point);
-    }
-    return grouped;
+    const labelOf = ({parameters}) =>
+      ballpiston.pairsText(
+        parameterPairs(parameters).filter(([name]) => name !== axis && varying[name]),
+      );
+    return [...Map.groupBy(points, labelOf)];
   }
 
   // At most MOST_LINES of the groups, evenly selected.
   function spread(grouped) {
-    const entries = [...grouped];
-    const step = Math.max(1, (entries.length - 1) / (MOST_LINES - 1));
-    return entries.length <= MOST_LINES
-      ? entries
-      : Array.from({length: MOST_LINES}, (_, i) => entries[Math.round(i * step)]);
+    if (grouped.length <= MOST_LINES) return grouped;
+    const step = (grouped.length - 1) / (MOST_LINES - 1);
+    return Array.from({length: MOST_LINES}, (_, i) => grouped[Math.round(i * step)]);
   }
 
   // {value, error, exact} in the form `shown`; value is null if the estimate lacks this form.
@@ -88,10 +82,9 @@
   }
 
   function isWide(numbers) {
-    const different = [...new Set(numbers.filter(isNumber))];
-    const least = different.reduce((a, b) => Math.min(a, b), Infinity);
-    const most = different.reduce((a, b) => Math.max(a, b), 0);
-    return different.length > 2 && least > 0 && most / least > MOST_WITHOUT_LOG;
+    const sorted = [...new Set(numbers.filter(isNumber))].sort((a, b) => a - b);
+    const [least, most] = [sorted[0], sorted.at(-1)];
+    return sorted.length > 2 && least > 0 && most / least > MOST_WITHOUT_LOG;
   }
 
   class GridChart {
@@ -121,24 +114,16 @@
       this.offered = offered;
       if (!estimates.includes(this.chosen.estimate)) this.chosen.estimate = estimates[0];
       if (!axes.includes(this.chosen.axis)) this.chosen.axis = axes[0];
-      const chooser = (field) => (value) => {
-        this.chosen[field] = value;
-        this.draw();
-      };
+      const chooser = (label, field, options) =>
+        choice(label, options, this.chosen[field], (value) => {
+          this.chosen[field] = value;
+          this.draw();
+        });
+      const named = (names, text) => names.map((name) => ({value: name, label: text(name)}));
       this.choices.replaceChildren(
-        choice(
-          'Estimate',
-          estimates.map((name) => ({value: name, label: words(name)})),
-          this.chosen.estimate,
-          chooser('estimate'),
-        ),
-        choice(
-          'Against',
-          axes.map((name) => ({value: name, label: symbolOf(name)})),
-          this.chosen.axis,
-          chooser('axis'),
-        ),
-        choice('Show', SHOWN, this.chosen.shown, chooser('shown')),
+        chooser('Estimate', 'estimate', named(estimates, words)),
+        chooser('Against', 'axis', named(axes, symbolOf)),
+        chooser('Show', 'shown', SHOWN),
       );
     }
 
@@ -160,8 +145,8 @@
         logY: isWide(lines.flatMap((line) => line.y)),
         note: !hasValues
           ? 'No exact value is known.'
-          : drawn.length < grouped.size
-            ? `${drawn.length} of ${grouped.size} lines, evenly selected`
+          : drawn.length < grouped.length
+            ? `${drawn.length} of ${grouped.length} lines, evenly selected`
             : null,
       });
     }

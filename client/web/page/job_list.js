@@ -64,32 +64,20 @@
     );
   }
 
-  function notes(job) {
-    return [
-      job.pinned ? 'pinned' : null,
-      job.results_expired ? 'results expired' : null,
-      job.answered_from_store ? 'answered from the store' : null,
-    ]
-      .filter(Boolean)
-      .join(', ');
-  }
+  const NOTES = {
+    pinned: 'pinned',
+    results_expired: 'results expired',
+    answered_from_store: 'answered from the store',
+  };
 
   function cellsOf(job) {
-    const note = notes(job);
+    const link = element('a', {href: addressOf(job)}, words(job.spec?.experiment));
+    const id = element('code', {class: 'soft'}, ballpiston.idOf(job));
+    const notes = Object.keys(NOTES).filter((name) => job[name]);
+    const note = notes.map((name) => NOTES[name]).join(', ');
     return [
-      element(
-        'span',
-        {},
-        element('a', {href: addressOf(job)}, words(job.spec?.experiment)),
-        ' ',
-        element('code', {class: 'soft'}, ballpiston.idOf(job)),
-      ),
-      element(
-        'span',
-        {},
-        stateElement(job),
-        note ? element('span', {class: 'soft'}, ` ${note}`) : null,
-      ),
+      element('span', {}, link, ' ', id),
+      element('span', {}, stateElement(job), note && element('span', {class: 'soft'}, ` ${note}`)),
       progressCell(job),
       ballpiston.timeElement(job.create_time) ?? '',
       job.principal ?? '',
@@ -115,10 +103,6 @@
       this.active.delete(job.name);
       if (FILTERS.active.includes(job.state)) this.active.add(job.name);
       return this.put(job.name, JSON.stringify(job), () => cellsOf(job), next);
-    }
-
-    append(jobs) {
-      for (const job of jobs) this.putJob(job, null);
     }
 
     // Updates the rows from a new answer for the first page. Adds new jobs at the top. Removes jobs
@@ -170,23 +154,11 @@
       this.rows = new JobRows(list, COLUMNS);
       this.empty = element('p', {hidden: true});
       this.more = button('More jobs', () => this.appendPage(), {hidden: true});
-      main.append(
-        element('h1', {tabindex: '-1'}, 'Jobs'),
-        this.status,
-        element(
-          'div',
-          {class: 'choices'},
-          ballpiston.choice(
-            'State',
-            Object.keys(FILTERS).map((name) => ({value: name, label: name})),
-            'all',
-            (name) => this.setFilter(name),
-          ),
-        ),
-        list,
-        this.empty,
-        this.more,
-      );
+      const names = Object.keys(FILTERS).map((name) => ({value: name, label: name}));
+      const filter = ballpiston.choice('State', names, 'all', (name) => this.setFilter(name));
+      const choices = element('div', {class: 'choices'}, filter);
+      const title = element('h1', {tabindex: '-1'}, 'Jobs');
+      main.append(title, this.status, choices, list, this.empty, this.more);
     }
 
     setFilter(name) {
@@ -200,16 +172,9 @@
     async page(token) {
       const jobs = [];
       for (let calls = 0; calls < MOST_CALLS; ++calls) {
-        const answer = await call(
-          'EnsembleService/ListEnsembleJobs',
-          {
-            page_size: PAGE - jobs.length,
-            page_token: token,
-            view: 'BASIC',
-            states: FILTERS[this.filter],
-          },
-          this.signal,
-        );
+        const wanted = {page_size: PAGE - jobs.length, page_token: token, view: 'BASIC'};
+        const request = {...wanted, states: FILTERS[this.filter]};
+        const answer = await call('EnsembleService/ListEnsembleJobs', request, this.signal);
         jobs.push(...(answer.jobs ?? []));
         token = answer.next_page_token ?? '';
         if (token === '' || jobs.length >= PAGE) break;
@@ -256,7 +221,7 @@
         const from = this.token;
         const {jobs, token} = await keepTrying(() => this.page(from), this.signal);
         if (filter !== this.filter || from !== this.token) return;
-        this.rows.append(jobs);
+        for (const job of jobs) this.rows.putJob(job, null);
         this.token = token;
         this.show();
       } finally {
@@ -280,9 +245,8 @@
       while (!this.signal.aborted) {
         await keepTrying(async () => {
           await this.refresh();
-          this.status.textContent = statusText(
-            await call('ServerService/GetServerStatus', {}, this.signal),
-          );
+          const status = await call('ServerService/GetServerStatus', {}, this.signal);
+          this.status.textContent = statusText(status);
         }, this.signal);
         this.rows.refreshTimes();
         this.wake = new AbortController();

@@ -15,36 +15,30 @@
 
   // ---- The known data of a job
 
-  // The estimates of a point at increasing numbers of samples.
-  class Convergence {
-    constructor() {
-      this.steps = []; // points, in the order of samples
-    }
+  // The steps of a point's convergence: its estimates at increasing numbers of samples.
+  function withStep(steps, {samples, estimates}) {
+    if (!(samples > (steps.at(-1)?.samples ?? 0))) return steps;
+    const longer = [...steps, {samples, estimates}];
+    return longer.length > MOST_STEPS ? longer.filter((_, i) => i % 2 === 1) : longer;
+  }
 
-    add(point) {
-      if (!(point.samples > (this.steps.at(-1)?.samples ?? 0))) return;
-      this.steps.push({samples: point.samples, estimates: point.estimates});
-      if (this.steps.length > MOST_STEPS) this.steps = this.steps.filter((_, i) => i % 2 === 1);
-    }
-
-    // Null if there are fewer than two steps.
-    chart(name) {
-      const steps = this.steps
-        .map((step) => ({samples: step.samples, ...ballpiston.estimateOf(step, name)}))
-        .filter((step) => ballpiston.isNumber(step.value));
-      if (steps.length < 2) return null;
-      const {exact, limit, samples: most} = steps.at(-1);
-      const places = steps.map(({samples: x, value, standard_error: error}) => {
-        return {x, value, error, exact, limit, source: 'measured'};
-      });
-      return {
-        title: `Convergence of ${words(name)}`,
-        xLabel: 'samples',
-        yLabel: 'value',
-        lines: ballpiston.seriesLines(places),
-        logX: most > 30 * steps[0].samples,
-      };
-    }
+  // Null if there are fewer than two steps.
+  function convergenceChart(allSteps, name) {
+    const steps = allSteps
+      .map((step) => ({samples: step.samples, ...ballpiston.estimateOf(step, name)}))
+      .filter((step) => ballpiston.isNumber(step.value));
+    if (steps.length < 2) return null;
+    const {exact, limit, samples: most} = steps.at(-1);
+    const places = steps.map(({samples: x, value, standard_error: error}) => {
+      return {x, value, error, exact, limit, source: 'measured'};
+    });
+    return {
+      title: `Convergence of ${words(name)}`,
+      xLabel: 'samples',
+      yLabel: 'value',
+      lines: ballpiston.seriesLines(places),
+      logX: most > 30 * steps[0].samples,
+    };
   }
 
   // Jobs that the server answered from its store. Only the answer to CreateEnsembleJob says this.
@@ -55,7 +49,7 @@
       this.job = null;
       this.points = new Map(); // index: the newest data of the point
       this.finished = new Set();
-      this.convergence = new Map();
+      this.convergence = new Map(); // index: the steps
       this.newest = null; // index of the last updated point
     }
 
@@ -72,8 +66,7 @@
       // A watch sends no histograms and curves. The known ones are kept until newer ones arrive.
       const {histograms, curves} = before ?? point;
       this.points.set(point.index, before?.detailed ? before : {...point, histograms, curves});
-      if (!this.convergence.has(point.index)) this.convergence.set(point.index, new Convergence());
-      this.convergence.get(point.index).add(point);
+      this.convergence.set(point.index, withStep(this.convergence.get(point.index) ?? [], point));
     }
 
     takeUpdate(update) {
@@ -122,23 +115,13 @@
     element('pre', {tabindex: '0', class: 'command'}, words.map(ballpiston.shellWord).join(' '));
 
   function notes(job) {
-    const shown = [];
-    if (job.answered_from_store) {
-      shown.push(
-        element('p', {class: 'panel'}, 'Answered from the store: the results were already there.'),
-      );
-    }
-    if (job.results_expired) {
-      shown.push(
-        element(
-          'div',
-          {class: 'panel'},
-          element('p', {}, 'The results have expired. To compute the same numbers again:'),
-          command('ballpiston', 'run', '--again', job.name),
-        ),
-      );
-    }
-    return shown;
+    const stored = 'Answered from the store: the results were already there.';
+    const expired = 'The results have expired. To compute the same numbers again:';
+    const again = () => command('ballpiston', 'run', '--again', job.name);
+    return [
+      job.answered_from_store && element('p', {class: 'panel'}, stored),
+      job.results_expired && element('div', {class: 'panel'}, element('p', {}, expired), again()),
+    ].filter(Boolean);
   }
 
   class JobHead {
@@ -224,20 +207,15 @@
       this.more.hidden = points.length <= this.count;
       const [shownCount, count] = [this.count, points.length].map(ballpiston.countText);
       this.more.textContent = `More points (${shownCount} of ${count} are shown)`;
-      this.mark(shown);
+      this.marked?.removeAttribute('aria-current');
+      this.marked = this.rows.rows.get(shown)?.row;
+      this.marked?.setAttribute('aria-current', 'true');
     }
 
     cells(point, state) {
       const choose = () => this.onChoose(point.index);
       const link = button(`Point ${point.index}`, choose, {class: 'link'});
-      const name = element('span', {}, link, state);
-      return ballpiston.pointCells(point, name);
-    }
-
-    mark(shown) {
-      this.marked?.removeAttribute('aria-current');
-      this.marked = this.rows.rows.get(shown)?.row;
-      this.marked?.setAttribute('aria-current', 'true');
+      return ballpiston.pointCells(point, element('span', {}, link, state));
     }
   }
 
@@ -257,7 +235,7 @@
       this.title.textContent = `Point ${point.index}${record.stateOf(point)}`;
       this.follow.hidden = isFollowing || ENDED.has(record.job?.state);
       const convergence = point.estimates?.length
-        ? record.convergence.get(point.index)?.chart(point.estimates[0].name)
+        ? convergenceChart(record.convergence.get(point.index) ?? [], point.estimates[0].name)
         : null;
       this.convergenceNote.hidden = convergence !== null || !(point.samples > 0);
       this.convergenceNote.textContent = isFinished
@@ -317,11 +295,9 @@
     }
 
     get shown() {
-      const {record} = this;
-      if (this.chosen !== null) return this.chosen;
-      const isActive = record.job && !ENDED.has(record.job.state);
-      if (isActive) return record.newest ?? 0;
-      return this.lastShown ?? 0;
+      const {job, newest} = this.record;
+      const isActive = job && !ENDED.has(job.state);
+      return this.chosen ?? (isActive ? newest : this.lastShown) ?? 0;
     }
 
     draw() {
@@ -348,16 +324,13 @@
     drawSoon() {
       if (this.drawing) return;
       this.drawing = true;
-      setTimeout(
-        () =>
-          requestAnimationFrame(() => {
-            const begin = performance.now();
-            if (!this.signal.aborted) this.draw();
-            this.took = performance.now() - begin;
-            this.drawing = false;
-          }),
-        SHARE_OF_DRAWING * (this.took ?? 0),
-      );
+      const draw = () => {
+        const begin = performance.now();
+        if (!this.signal.aborted) this.draw();
+        this.took = performance.now() - begin;
+        this.drawing = false;
+      };
+      setTimeout(() => requestAnimationFrame(draw), SHARE_OF_DRAWING * (this.took ?? 0));
     }
 
     // Requests the histograms and curves of a point, which a watch does not send: those of a
@@ -407,21 +380,12 @@
     async askAgain() {
       this.head.ask.disabled = true;
       ballpiston.clearBanner();
-      try {
-        await this.create();
-      } catch {
-        // The banner shows the error, or the view has changed.
-      } finally {
-        this.head.ask.disabled = false;
-      }
-    }
-
-    async create() {
       const request = {spec: this.record.job.spec, request_id: crypto.randomUUID()};
-      const job = await keepTrying(
-        () => call('EnsembleService/CreateEnsembleJob', request, this.signal),
-        this.signal,
-      );
+      const create = () => call('EnsembleService/CreateEnsembleJob', request, this.signal);
+      // Null after an error: the banner shows the error, or the view has changed.
+      const job = await keepTrying(create, this.signal).catch(() => null);
+      this.head.ask.disabled = false;
+      if (!job) return;
       if (job.answered_from_store) fromStore.add(job.name);
       if (job.name !== this.name) location.hash = ballpiston.addressOf(job);
       this.record.takeJob(this.record.job);
@@ -443,11 +407,9 @@
     // A watch of an ended job sends the job last, and no watch sends the grid. Therefore the page
     // first requests the job.
     async run() {
-      const job = await keepTrying(
-        () => call('EnsembleService/GetEnsembleJob', {name: this.name}, this.signal),
-        this.signal,
-      );
-      this.record.takeJob(job);
+      const {name, signal} = this;
+      const ask = () => call('EnsembleService/GetEnsembleJob', {name}, signal);
+      this.record.takeJob(await keepTrying(ask, signal));
       this.drawSoon();
       this.watchStatus();
       await keepTrying((progress) => this.watch(progress), this.signal);

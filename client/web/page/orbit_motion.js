@@ -23,18 +23,11 @@
       this.hasEnded = false; // no event follows the known ones
     }
 
-    add(events) {
-      this.events.push(...events);
-    }
-
     // Advances to `time`, at most to the last known event. Returns the events on the way.
     advanceTo(time) {
-      const reached = [];
-      while (reached.length < this.events.length && this.events[reached.length].time <= time) {
-        this.apply(this.events[reached.length]);
-        reached.push(this.events[reached.length]);
-      }
-      this.events.splice(0, reached.length);
+      const next = this.events.findIndex((event) => event.time > time);
+      const reached = this.events.splice(0, next < 0 ? this.events.length : next);
+      reached.forEach((event) => this.apply(event));
       this.count += reached.length;
       this.time = this.events.length ? time : (reached.at(-1)?.time ?? this.time);
       return reached;
@@ -47,11 +40,8 @@
 
     // A ball, a piston or both take part in an event.
     apply(event) {
-      for (const [name, bodies] of [
-        ['ball', this.balls],
-        ['piston', this.pistons],
-      ]) {
-        const body = bodies[event[name]];
+      for (const name of ['ball', 'piston']) {
+        const body = this[`${name}s`][event[name]];
         if (!body) continue;
         for (const field of FIELDS) body[field] = event[`${name}_${field}`];
         body.time = event.time;

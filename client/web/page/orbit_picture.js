@@ -17,22 +17,17 @@
 
   const styleOf = (name) => ballpiston.styleOf(name);
 
-  function mix(a, b, share) {
-    return a.map((value, i) => Math.round(value + share * (b[i] - value)));
-  }
-
   // `share`: the energy as a share of mostEnergy, from 0 to 1.
   function colourOf(share) {
     const at = Math.min(Math.max(share, 0), 1) * (CIVIDIS.length - 1);
     const i = Math.min(Math.floor(at), CIVIDIS.length - 2);
-    return `rgb(${mix(CIVIDIS[i], CIVIDIS[i + 1], at - i).join(',')})`;
+    const mixed = (c, k) => Math.round(c + (at - i) * (CIVIDIS[i + 1][k] - c));
+    return `rgb(${CIVIDIS[i].map(mixed).join(',')})`;
   }
 
-  function shapeOf(cells) {
-    const [columns, rows] = String(cells ?? '1')
-      .split('x')
-      .map(Number);
-    return {columns, rows: rows || 1};
+  function shapeOf(cells = '1') {
+    const [columns, rows = 1] = cells.split('x').map(Number);
+    return {columns, rows};
   }
 
   class OrbitPicture {
@@ -138,19 +133,18 @@
       const [alongX, alongY] = piston.vertical ? [0, half] : [half, 0];
       const x = piston.x + dx,
         y = piston.y + dy;
-      for (const [style, width] of [
-        [styleOf('--text'), 7],
-        [colourOf(piston.energy / this.mostEnergy), 4],
-      ]) {
+      const draw = (style, width) => {
         c.strokeStyle = style;
-        c.lineWidth = Math.max(width * this.pixel * (devicePixelRatio || 1) * this.thickness, 0);
+        c.lineWidth = width * this.thickness;
         ballpiston.drawLine(c, [x - alongX, y - alongY], [x + alongX, y + alongY]);
-      }
+      };
+      draw(styleOf('--text'), 7);
+      draw(colourOf(piston.energy / this.mostEnergy), 4);
     }
 
-    // Lines are thinner if there are many cells.
+    // The width of a thin line, in cells: one pixel of the layout, or less if there are many cells.
     get thickness() {
-      return Math.min(1, this.scale / 150);
+      return this.pixel * (devicePixelRatio || 1) * Math.min(1, this.scale / 150);
     }
 
     drawBall(c, ball) {
@@ -159,7 +153,7 @@
       c.fillStyle = colourOf(ball.energy / this.mostEnergy);
       c.fill();
       c.strokeStyle = styleOf('--text');
-      c.lineWidth = 1.5 * this.pixel * (devicePixelRatio || 1) * this.thickness;
+      c.lineWidth = 1.5 * this.thickness;
       c.stroke();
     }
   }

@@ -62,13 +62,10 @@
   }
 
   function eventText(event) {
-    const parts = [`t = ${event.time.toFixed(4)}`, ballpiston.words(event.event)];
-    if (event.ball !== undefined)
-      parts.push(`ball ${event.ball}: energy ${valueText(event.ball_energy, 1e-3)}`);
-    if (event.piston !== undefined) {
-      parts.push(`piston ${event.piston}: energy ${valueText(event.piston_energy, 1e-3)}`);
-    }
-    return parts.join(', ');
+    const bodies = ['ball', 'piston']
+      .filter((name) => event[name] !== undefined)
+      .map((name) => `${name} ${event[name]}: energy ${valueText(event[`${name}_energy`], 1e-3)}`);
+    return [`t = ${event.time.toFixed(4)}`, ballpiston.words(event.event), ...bodies].join(', ');
   }
 
   class OrbitView {
@@ -122,31 +119,22 @@
         value: this.speed,
         oninput: () => this.setSpeed(Number(this.speedInput.value)),
       });
-      const scale = element('canvas', {
-        width: 160,
-        height: 12,
-        class: 'scale',
-        'aria-hidden': 'true',
-      });
+      const size = {width: 160, height: 12};
+      const scale = element('canvas', {...size, class: 'scale', 'aria-hidden': 'true'});
       ballpiston.drawEnergyScale(scale);
       this.scaleEnd = element('span', {}, '');
-      const controls = element(
+      const choice = (tag, label, ...parts) =>
+        element(tag, {class: 'choice'}, element('span', {}, label), parts);
+      this.setSpeed(this.speed);
+      this.play(this.isPlaying);
+      return element(
         'div',
         {class: 'choices'},
         this.playButton,
         this.stepButton,
-        element(
-          'label',
-          {class: 'choice'},
-          element('span', {}, 'Speed'),
-          this.speedInput,
-          this.speedText,
-        ),
-        element('span', {class: 'choice'}, element('span', {}, 'Energy 0'), scale, this.scaleEnd),
+        choice('label', 'Speed', this.speedInput, this.speedText),
+        choice('span', 'Energy 0', scale, this.scaleEnd),
       );
-      this.setSpeed(this.speed);
-      this.play(this.isPlaying);
-      return controls;
     }
 
     below() {
@@ -154,20 +142,12 @@
       this.chart = null;
       this.chartPlace = element('div');
       this.list = element('ol', {class: 'events', 'aria-label': 'Last events, newest first'});
-      return element(
-        'div',
-        {},
-        this.clock,
-        element(
-          'p',
-          {class: 'soft'},
-          'Keys, while the picture has the focus: space plays and pauses, ' +
-            'n goes to the next exchange of ball and piston, + and − change the speed.',
-        ),
-        this.chartPlace,
-        element('h2', {}, 'Last events'),
-        this.list,
-      );
+      const keys =
+        'Keys, while the picture has the focus: space plays and pauses, ' +
+        'n goes to the next exchange of ball and piston, + and − change the speed.';
+      const title = element('h2', {}, 'Last events');
+      const about = element('p', {class: 'soft'}, keys);
+      return element('div', {}, this.clock, about, this.chartPlace, title, this.list);
     }
 
     onKey(event) {
@@ -227,7 +207,7 @@
       for await (const {start, events = []} of messages) {
         progress();
         if (start && this.request !== request) this.begin(request, start);
-        this.motion.add(events.slice(known));
+        this.motion.events.push(...events.slice(known));
         known = Math.max(0, known - events.length);
         if (this.isSeeking) this.toNextExchange();
         await this.roomFor(signal);
@@ -285,12 +265,8 @@
         if (event.event === 'ball_piston')
           this.note(this.motion.balls, this.motion.pistons, event.time);
       }
-      this.list.prepend(
-        ...reached
-          .slice(-MOST_LISTED)
-          .reverse()
-          .map((event) => element('li', {}, eventText(event))),
-      );
+      const items = reached.slice(-MOST_LISTED).map((event) => element('li', {}, eventText(event)));
+      this.list.prepend(...items.reverse());
       while (this.list.childElementCount > MOST_LISTED) this.list.lastChild.remove();
       this.played.dispatchEvent(new Event('advance'));
     }
@@ -307,23 +283,16 @@
       const {isPair} = this.picture;
       const steps = [...this.exchanges, {...this.exchanges.at(-1), time: this.motion.time}];
       const x = steps.map((at) => at.time);
-      const line = (label, field, colour) => ({
-        label,
-        kind: 'exact',
-        stepped: true,
-        colour,
-        x,
-        y: steps.map((at) => at[field]),
+      const lines = ['ball', 'piston'].map((name, colour) => {
+        const shape = {kind: 'exact', stepped: true, colour};
+        return {...shape, label: isPair ? name : `${name}s`, x, y: steps.map((at) => at[name])};
       });
       this.chart.show({
         title: isPair ? 'Energies of ball and piston' : 'Mean energies of balls and pistons',
         xLabel: 'time',
         yLabel: 'energy',
         fromZero: true,
-        lines: [
-          line(isPair ? 'ball' : 'balls', 'ball', 0),
-          line(isPair ? 'piston' : 'pistons', 'piston', 1),
-        ],
+        lines,
       });
     }
 

@@ -22,8 +22,7 @@
     return text && `${text}${job.error?.message ? `: ${job.error.message}` : '.'}`;
   }
 
-  function panels(entry, pictured) {
-    const {job, points} = entry;
+  function panels(job, points) {
     const inTable = points.length > MOST_ROWS ? `the first ${countText(MOST_ROWS)}` : 'all';
     const leftOut = (job.progress?.points_done ?? 0) - points.length;
     return [
@@ -34,8 +33,8 @@
       leftOut > 0 && points.length > 0
         ? `${countText(leftOut)} further points are not in this report.`
         : null,
-      points.length > pictured
-        ? `The first ${pictured} of ${countText(points.length)} points have tables and pictures; ` +
+      points.length > MOST_PICTURED
+        ? `The first ${MOST_PICTURED} of ${countText(points.length)} points have tables and pictures; ` +
           `the table at the end has ${inTable}.`
         : null,
     ]
@@ -70,14 +69,12 @@
     if (!grid.show(points)) grid.remove();
   }
 
-  function showJob(main, entry) {
-    const {job} = entry;
-    const points = entry.points ?? [];
+  function showJob(main, {job, points = []}) {
     const section = element(
       'section',
       {'aria-label': `${words(job.spec?.experiment)}, ${job.name}`},
       element('h2', {}, words(job.spec?.experiment)),
-      panels({...entry, points}, MOST_PICTURED),
+      panels(job, points),
       ballpiston.specFacts(job.spec),
       ballpiston.specJson(job.spec),
       ballpiston.jobFacts(job),

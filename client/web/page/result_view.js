@@ -101,10 +101,9 @@
   // number of bins.
   function mergedBins(bins) {
     if (bins < 2 * MOST_BINS) return 1;
-    for (let size = 1; size <= bins; ++size) {
-      if (bins % size === 0 && bins / size <= MOST_BINS) return size;
-    }
-    return bins;
+    let size = Math.ceil(bins / MOST_BINS);
+    while (bins % size !== 0) ++size;
+    return size;
   }
 
   const NAMES = {
@@ -194,17 +193,15 @@
 
   function histogramCharts(point) {
     const histograms = point.histograms ?? [];
-    const totals = new Map();
-    const keyOf = (histogram) => `${histogram.name} ${histogram.time}`;
-    for (const histogram of histograms) {
-      totals.set(keyOf(histogram), (totals.get(keyOf(histogram)) ?? 0) + sum(histogram.counts));
-    }
+    const totalOf = ({name, time}) =>
+      sum(histograms.filter((h) => h.name === name && h.time === time).flatMap((h) => h.counts));
     return histograms
-      .filter((histogram) => {
+      .map((histogram) => ({histogram, total: totalOf(histogram)}))
+      .filter(({histogram, total}) => {
         const isLawAlone = !histogram.counts.length && histogram.expected_probabilities.length;
-        return totals.get(keyOf(histogram)) > 0 || isLawAlone;
+        return total > 0 || isLawAlone;
       })
-      .map((histogram) => histogramChart(histogram, totals.get(keyOf(histogram))));
+      .map(({histogram, total}) => histogramChart(histogram, total));
   }
 
   // ---- Curves

@@ -2,7 +2,6 @@
 #include <google/protobuf/util/message_differencer.h>
 
 #include "client/command/question.h"
-#include "client/command/spec_file.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {
@@ -53,8 +52,6 @@ TEST_F(QuestionTest, EachFlagReachesItsField) {
         << spec.DebugString();
   }
 }
-
-// ---- spec_file.h ----
 
 TEST(SpecFile, MayBeginWithAByteOrderMark) {
   const auto spec =
