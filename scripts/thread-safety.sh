@@ -34,9 +34,7 @@ folders_with_mutexes() {
   grep -rlw --include='*.h' --include='*.cc' Mutex server | xargs -n 1 dirname | sort -u
 }
 
-for fault in tests/sanitizer/seeded_missing_lock.cc tests/sanitizer/seeded_lock_order.cc; do
-  check_seeded "$fault"
-done
+check_seeded tests/sanitizer/seeded_lock_faults.cc
 generate_messages
 for folder in $(folders_with_mutexes); do together "$folder"; done |
   xargs -n 1 -P "$(nproc)" "${CLANG[@]}" -Werror

@@ -35,28 +35,13 @@ void ExitUnless(const absl::Status& ok) {
 
 // ---- the server ----
 
-// Takes part only as far as its caller has it take part. A lease is one turn.
-class SimulatedExecutor {
- public:
-  SimulatedExecutor(Scheduler& scheduler, bool local, double seconds)
-      : scheduler_(scheduler), capacity_{.local = local, .share = {}, .seconds = seconds} {
-    if (local) capacity_.share = [](const Lease&) { return std::make_shared<OneTurn>(); };
-  }
-
-  std::optional<Lease> Next() { return scheduler_.Next(capacity_); }
-
- private:
-  struct OneTurn : SharedWork {
-    bool HasTurn() const override { return false; }
-  };
-
-  Scheduler& scheduler_;
-  Capacity capacity_;
+// An executor takes part only as far as its caller has it take part. A lease is one turn.
+struct OneTurn : SharedWork {
+  bool HasTurn() const override { return false; }
 };
 
 struct Server {
-  explicit Server(double lease_seconds)
-      : local(scheduler, true, kLocalLeaseSeconds), remote(scheduler, false, lease_seconds) {}
+  explicit Server(double lease_seconds) : remote{.local = false, .seconds = lease_seconds} {}
 
   // All points have the same energy, so their histograms have the same bins.
   void Create(const ExperimentKind& kind, double delta, int64_t samples, int points) {
@@ -86,7 +71,10 @@ struct Server {
   FactoryOpener opener{
       [](const EnsembleSpec& spec, size_t index) { return PointExperiment::Create(spec, index); }};
   Scheduler scheduler{opener, kLocalCores};
-  SimulatedExecutor local, remote;
+  Capacity local = {.local = true,
+                    .share = [](const Lease&) { return std::make_shared<OneTurn>(); },
+                    .seconds = kLocalLeaseSeconds};
+  Capacity remote;
   JobBook book{*store, Limits{}, scheduler};
 };
 
@@ -114,9 +102,9 @@ void AcceptChunks(benchmark::State& state, const ExperimentKind& kind, bool in_o
   constexpr size_t kChunks = 5000;
   Server server(0);  // a lease is one chunk
   server.Create(kind, 0.0125, kMaxSamples, 1);
-  server.Open(*server.local.Next());
+  server.Open(*server.scheduler.Next(server.local));
   std::vector<Lease> leases;
-  while (leases.size() < kChunks) leases.push_back(server.remote.Next().value());
+  while (leases.size() < kChunks) leases.push_back(server.scheduler.Next(server.remote).value());
   std::mt19937_64 random(1);
   if (!in_order) std::shuffle(leases.begin(), leases.end(), random);
   std::optional<BlockResult> block;
@@ -166,7 +154,7 @@ class Sweep {
   bool BeginLeases() {
     bool began = false;
     while (idle_here_ > 0) {
-      std::optional<Lease> lease = server_.local.Next();
+      std::optional<Lease> lease = server_.scheduler.Next(server_.local);
       if (!lease) break;
       began = true;
       if (lease->OpensPoints()) {
@@ -177,7 +165,7 @@ class Sweep {
       Begin({.local = true, .lease = *std::move(lease)});
     }
     while (idle_elsewhere_ > 0) {
-      std::optional<Lease> lease = server_.remote.Next();
+      std::optional<Lease> lease = server_.scheduler.Next(server_.remote);
       if (!lease) break;
       began = true;
       --idle_elsewhere_;

@@ -10,6 +10,8 @@
 #pragma once
 
 #include "google/protobuf/message.h"
+#include "google/protobuf/text_format.h"
+#include "tests/support/dice.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::fuzz {
@@ -37,19 +39,47 @@ std::vector<FuzzTarget> ServerTextTargets();  // server_texts.cc
 std::vector<FuzzTarget> ClientTargets();      // client_texts.cc
 
 // All of them.
-const std::vector<FuzzTarget>& Targets();
-
-// One of them; throws std::out_of_range if there is none of this name.
-const FuzzTarget& TargetOf(const std::string& name);
+inline const std::vector<FuzzTarget>& Targets() {
+  static std::vector<FuzzTarget> all;
+  if (!all.empty()) return all;
+  for (const auto& some :
+       {RequestTargets(), StoredTargets(), ServerTextTargets(), ClientTargets()}) {
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
 
 // Throws std::logic_error unless `is_so`.
-void Require(bool is_so, const char* what);
+inline void Require(bool is_so, const char* what) {
+  if (!is_so) throw std::logic_error(what);
+}
 
 // Selects one input in n for slow checks. The selection depends only on the input.
-bool IsOneIn(size_t n, const std::string& input);
+inline bool IsOneIn(size_t n, const std::string& input) {
+  return Dice(std::hash<std::string>()(input)).OneIn(n);
+}
 
 // The seeds: the files of FOLDER/NAME, and those that the target makes itself. Files *.textproto
-// are converted to the bytes of their message. Throws if a file cannot be read.
-std::vector<std::string> SeedsOf(const FuzzTarget& target, const std::string& folder);
+// are converted to the bytes of their message. Throws if one spells no such message.
+inline std::vector<std::string> SeedsOf(const FuzzTarget& target, const std::string& folder) {
+  const std::filesystem::path of_target = folder + "/" + target.name;
+  std::set<std::filesystem::path> paths;
+  if (exists(of_target)) {
+    for (const auto& entry : std::filesystem::directory_iterator(of_target)) paths.insert(entry);
+  }
+  std::vector<std::string> seeds;
+  for (const std::filesystem::path& path : paths) {
+    seeds.push_back(Contents(path));
+    if (path.extension() != ".textproto") continue;
+    const std::unique_ptr<google::protobuf::Message> message(target.message->New());
+    if (!google::protobuf::TextFormat::ParseFromString(seeds.back(), message.get())) {
+      throw std::runtime_error(path.string() + " does not spell a " + message->GetTypeName());
+    }
+    seeds.back() = message->SerializeAsString();
+  }
+  if (target.made_seeds == nullptr) return seeds;
+  for (std::string& seed : target.made_seeds()) seeds.push_back(std::move(seed));
+  return seeds;
+}
 
 }  // namespace ballpiston::fuzz

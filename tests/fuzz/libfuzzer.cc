@@ -15,7 +15,8 @@ namespace {
 constexpr std::string_view kWriteSeeds = "--write_seeds=";
 
 const FuzzTarget& Target() {
-  static const FuzzTarget& target = TargetOf(std::getenv("FUZZ_TARGET"));
+  static const std::string name = std::getenv("FUZZ_TARGET");
+  static const FuzzTarget& target = *std::ranges::find(Targets(), name, &FuzzTarget::name);
   return target;
 }
 

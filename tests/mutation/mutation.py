@@ -116,11 +116,9 @@ def builds(folder: str) -> bool:
 
 
 def first_failure(build: Path, folder: str, jobs: int, usual: float) -> str | None:
-    """The first test that fails, or the part of a program that crashes or hangs. `usual` is the
-    time of all parts in seconds. A part hangs if it runs for three times `usual` (at least
-    SHORTEST_HANG), or if a process of it uses three times `usual` of processor time. A part that
-    fails runs once more, and only the second time counts, because a busy machine can make a test
-    fail too."""
+    """The first test that fails, or the part of a program that crashes or hangs (README.md).
+    `usual` is the time of all parts in seconds. A part that fails runs once more, because a busy
+    machine can make a test fail too."""
     names = "|".join(TESTS[folder])
     command = ["setpriv", "--pdeathsig", "TERM", "prlimit", f"--cpu={math.ceil(3 * usual)}:"]
     command += ["ctest", "--test-dir", str(build), "-R", rf"^({names})\.", "-j", str(jobs)]

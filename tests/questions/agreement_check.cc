@@ -23,8 +23,8 @@ void Compare(const std::string& what, double value, double other, double permitt
   permitted += kRounding * std::max(std::fabs(value), std::fabs(other));
   if (difference <= permitted) return;
   findings.push_back(
-      {kAgreementCheck, absl::StrFormat("%s: %.9g and %.9g differ by %.3g, permitted %.3g", what,
-                                        value, other, difference, permitted)});
+      {"agreement", absl::StrFormat("%s: %.9g and %.9g differ by %.3g, permitted %.3g", what, value,
+                                    other, difference, permitted)});
 }
 
 // Model errors are known for the first estimate, or are 0. The mean of a distance between laws

@@ -1,7 +1,6 @@
 #include "tests/questions/checks.h"
 
-#include <google/protobuf/descriptor.h>
-
+#include "absl/strings/ascii.h"
 #include "core/model_choice/ladder.h"
 #include "core/statistics/stated_error.h"
 #include "tests/support/process.h"
@@ -53,7 +52,7 @@ void CheckErrors(const v1::PointResult& result, Findings& findings) {
         std::numeric_limits<double>::epsilon() / 2 * std::fabs(estimate.value());
     if (estimate.standard_error() <= 0 || estimate.standard_error() < rounding) {
       findings.push_back(
-          {kFalseZeroCheck,
+          {"false zero",
            absl::StrCat(estimate.name(), " is ", estimate.value(), " +- ",
                         estimate.standard_error(), " from ", result.samples(), " samples by ",
                         v1::EnsembleSpec::Model_Name(result.model()))});
@@ -63,23 +62,23 @@ void CheckErrors(const v1::PointResult& result, Findings& findings) {
 
 void CheckMeasured(const v1::PointResult& result, Findings& findings) {
   if (result.estimates().empty()) {
-    findings.push_back({kMeasuredCheck, "no estimate"});
+    findings.push_back({"measured", "no estimate"});
     return;
   }
   if (!TakesSamples(result.model()) || !result.remarks().empty()) return;
   if (result.samples() < 1) {
-    findings.push_back({kMeasuredCheck, "0 samples, and no remark"});
+    findings.push_back({"measured", "0 samples, and no remark"});
   } else if (result.samples() >= kEnoughSamples && !result.estimates(0).has_standard_error()) {
     findings.push_back(
-        {kMeasuredCheck, absl::StrCat(result.estimates(0).name(), " has from ", result.samples(),
-                                      " samples no error, and no remark")});
+        {"measured", absl::StrCat(result.estimates(0).name(), " has from ", result.samples(),
+                                  " samples no error, and no remark")});
   }
 }
 
 void CheckHealth(const v1::EnsembleSpec& spec, const v1::PointResult& result, Findings& findings) {
   const double most = spec.precision() == v1::EnsembleSpec::SINGLE ? 1e-4 : 1e-9;
   if (result.health().escapes() == 0 && result.health().max_energy_error() <= most) return;
-  findings.push_back({kHealthCheck, result.health().ShortDebugString()});
+  findings.push_back({"health", result.health().ShortDebugString()});
 }
 
 void CheckLaws(const v1::PointResult& result, Findings& findings) {
@@ -93,72 +92,25 @@ void CheckLaws(const v1::PointResult& result, Findings& findings) {
       continue;
     }
     if (!(std::fabs(sum - 1) <= kLawTolerance)) {
-      findings.push_back({kLawCheck, absl::StrCat("the probabilities of ", histogram.name(),
-                                                  " sum to 1 + ", sum - 1)});
+      findings.push_back({"law", absl::StrCat("the probabilities of ", histogram.name(),
+                                              " sum to 1 + ", sum - 1)});
     }
   }
   if (both_signs != 0 && !(std::fabs(both_signs - 1) <= kLawTolerance)) {
     findings.push_back(
-        {kLawCheck, absl::StrCat("the probabilities of alpha sum to 1 + ", both_signs - 1)});
+        {"law", absl::StrCat("the probabilities of alpha sum to 1 + ", both_signs - 1)});
   }
 }
 
 // ---- finite numbers ----
 
-using google::protobuf::FieldDescriptor;
-using google::protobuf::Message;
-
-void Check(const std::string& name, const std::optional<double>& value, Findings& findings) {
-  if (value && !std::isfinite(*value)) {
-    findings.push_back({kFiniteCheck, absl::StrCat(name, " is ", *value)});
-  }
-}
-
-void CheckNumbers(const Message& message, const std::string& path, Findings& findings) {
-  const google::protobuf::Reflection& reflection = *message.GetReflection();
-  std::vector<const FieldDescriptor*> fields;
-  reflection.ListFields(message, &fields);
-  for (const FieldDescriptor* field : fields) {
-    const std::string name = absl::StrCat(path, path.empty() ? "" : ".", field->name());
-    const int size = field->is_repeated() ? reflection.FieldSize(message, field) : 1;
-    for (int i = 0; i < size; ++i) {
-      if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
-        CheckNumbers(field->is_repeated() ? reflection.GetRepeatedMessage(message, field, i)
-                                          : reflection.GetMessage(message, field),
-                     name, findings);
-      } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
-        Check(name,
-              field->is_repeated() ? reflection.GetRepeatedDouble(message, field, i)
-                                   : reflection.GetDouble(message, field),
-              findings);
-      }
+void Check(const std::string& name, std::initializer_list<std::optional<double>> values,
+           Findings& findings) {
+  for (const std::optional<double>& value : values) {
+    if (value && !std::isfinite(*value)) {
+      findings.push_back({"finite", absl::StrCat("a number of ", name, " is ", *value)});
     }
   }
-}
-
-void CheckEstimate(const Estimate& estimate, Findings& findings) {
-  Check(estimate.name, estimate.value, findings);
-  Check(estimate.name + ", standard error", estimate.standard_error, findings);
-  Check(estimate.name + ", exact", estimate.exact, findings);
-  Check(estimate.name + ", limit", estimate.limit, findings);
-  Check(estimate.name + ", noise floor", estimate.noise_floor, findings);
-}
-
-void CheckCurve(const Curve& curve, Findings& findings) {
-  for (const CurvePoint& point : curve.points) {
-    const std::string name = absl::StrCat(curve.name, " at ", point.at);
-    Check(name + ", place", point.at, findings);
-    Check(name, point.value, findings);
-    Check(name + ", error", point.standard_error, findings);
-    Check(name + ", limit", point.limit, findings);
-  }
-}
-
-void CheckDivergence(const KlDivergence& divergence, Findings& findings) {
-  Check("relative entropy", divergence.value, findings);
-  Check("relative entropy, noise floor", divergence.noise_floor, findings);
-  Check("relative entropy, noise error", divergence.noise_error, findings);
-  Check("relative entropy, error", divergence.standard_error, findings);
 }
 
 }  // namespace
@@ -182,7 +134,7 @@ const v1::ModelPlan* Chosen(const v1::PointPlan& plan) {
 Findings CheckPlan(const v1::PointPlan& plan) {
   Findings findings = CheckFinite(plan);
   const auto add = [&](const auto&... what) {
-    findings.push_back({kPlanCheck, absl::StrCat(what...)});
+    findings.push_back({"plan", absl::StrCat(what...)});
   };
   for (const v1::ModelPlan& model : plan.models()) {
     if (model.samples() < 0 || model.work() < 0 || model.relative_statistical_error() < 0 ||
@@ -212,13 +164,17 @@ double PeakMemory::Bytes() const { return BytesOf("VmHWM:") - at_first_; }
 
 Findings CheckMemory(double planned, double measured) {
   if (kIsSanitized || measured <= planned + kMemoryOfAnyAnswer) return {};
-  return {{kMemoryCheck,
+  return {{"memory",
            absl::StrFormat("planned %.0f MB, took %.0f MB", 1e-6 * planned, 1e-6 * measured)}};
 }
 
-Findings CheckFinite(const Message& message) {
+Findings CheckFinite(const google::protobuf::Message& message) {
   Findings findings;
-  CheckNumbers(message, "", findings);
+  for (const absl::string_view line : absl::StrSplit(message.DebugString(), '\n')) {
+    if (absl::EndsWith(line, " nan") || absl::EndsWith(line, "inf")) {
+      findings.push_back({"finite", std::string(absl::StripLeadingAsciiWhitespace(line))});
+    }
+  }
   return findings;
 }
 
@@ -227,16 +183,25 @@ Findings CheckFinite(const PointSummary& summary) {
   // A small sample may contain nothing that determines a value.
   const bool is_small = !HasStatedError(static_cast<double>(summary.samples));
   for (const Estimate& estimate : summary.estimates) {
-    if (!is_small || !std::isnan(estimate.value)) CheckEstimate(estimate, findings);
+    if (is_small && std::isnan(estimate.value)) continue;
+    Check(estimate.name,
+          {estimate.value, estimate.standard_error, estimate.exact, estimate.limit,
+           estimate.noise_floor},
+          findings);
   }
-  for (const Curve& curve : summary.curves) CheckCurve(curve, findings);
-  if (summary.kl_divergence) CheckDivergence(*summary.kl_divergence, findings);
-  for (const NamedHistogram& named : summary.histograms) {
-    Check(named.name + ", lower", named.histogram.lower, findings);
-    Check(named.name + ", upper", named.histogram.upper, findings);
-    Check(named.name + ", time", named.time, findings);
+  for (const Curve& curve : summary.curves) {
+    for (const CurvePoint& point : curve.points) {
+      Check(curve.name, {point.at, point.value, point.standard_error, point.limit}, findings);
+    }
   }
-  Check("energy error", summary.health.max_energy_error, findings);
+  if (const auto& kl = summary.kl_divergence) {
+    Check("relative entropy", {kl->value, kl->noise_floor, kl->noise_error, kl->standard_error},
+          findings);
+  }
+  for (const auto& [name, sigma, histogram, time] : summary.histograms) {
+    Check(name, {histogram.lower, histogram.upper, time}, findings);
+  }
+  Check("health", {summary.health.max_energy_error}, findings);
   return findings;
 }
 

@@ -9,23 +9,8 @@
 
 namespace ballpiston::questions {
 
-// The names of the rules.
-inline constexpr char kCrashCheck[] = "crash";
-inline constexpr char kEndCheck[] = "end";
-inline constexpr char kRefusalCheck[] = "refusal";
-inline constexpr char kPlanCheck[] = "plan";
-inline constexpr char kMemoryCheck[] = "memory";
-inline constexpr char kFiniteCheck[] = "finite";
-inline constexpr char kFalseZeroCheck[] = "false zero";
-inline constexpr char kMeasuredCheck[] = "measured";
-inline constexpr char kHealthCheck[] = "health";
-inline constexpr char kLawCheck[] = "law";
-inline constexpr char kAgreementCheck[] = "agreement";
-inline constexpr char kCallCheck[] = "call";
-inline constexpr char kJobCheck[] = "job";
-
 struct Finding {
-  std::string check;  // the rule that is broken
+  std::string check;  // the name of the broken rule
   std::string what;
 };
 
@@ -40,6 +25,7 @@ struct Report {
                        [&](const Finding& finding) { return finding.check == check; });
   }
   void Add(const Findings& more) { findings.insert(findings.end(), more.begin(), more.end()); }
+  void Add(const std::string& check, const std::string& what) { findings.push_back({check, what}); }
 };
 
 // A question that was planned at 0.1 s or less, and takes more processor time than this, is

@@ -1,4 +1,5 @@
 #include <google/protobuf/descriptor.h>
+#include <google/protobuf/text_format.h>
 
 #include "client/output/json.h"
 #include "core/ensemble/experiment_kind.h"
@@ -53,21 +54,11 @@ inline double Below(double x) {
 // In [lower, upper], often near an end.
 double NearAnEnd(Dice& dice, double lower, double upper) {
   const double width = upper - lower, distance = width * std::pow(10, -dice.Between(0, 17));
-  switch (dice.Below(8)) {
-    case 0:
-      return lower;
-    case 1:
-      return upper;
-    case 2:
-      return std::min(Above(lower), upper);
-    case 3:
-      return std::max(Below(upper), lower);
-    case 4:
-    case 5:
-      return lower + distance;
-    default:
-      return std::max(upper - distance, lower);
-  }
+  const double above = lower + distance, below = std::max(upper - distance, lower);
+  const double values[] = {
+      lower, upper, std::min(Above(lower), upper), std::max(Below(upper), lower), above, above,
+      below, below};
+  return values[dice.Below(8)];
 }
 
 double Rho(Dice& dice, bool extreme) {
@@ -149,49 +140,42 @@ void SetValueOutside(Dice& dice, const Parameter& parameter, double bound_of_del
 // Changes the question into one that the service has to refuse, and returns why.
 std::string AddDefect(Dice& dice, const Parameter& parameter, double bound_of_delta,
                       v1::EnsembleSpec& spec) {
-  constexpr int kUnknown = 99;  // in no enumeration
-  constexpr int kEach = 317;    // its square is above kMaxPoints
+  using Texts = std::vector<std::string>;
+  static const std::pair<const char*, Texts> kDefects[] = {
+      {"the number of samples is outside",
+       {"target { samples: 0 }", "target { samples: -1 }",
+        absl::StrCat("target { samples: ", kMaxSamples + 1, " }")}},
+      {"the tolerance is outside",
+       {"target { tolerance: 0 }", "target { tolerance: -0.01 }", "target { tolerance: 1 }",
+        "target { tolerance: 1.5 }", "target { tolerance: nan }"}},
+      {"a count and a budget", {"target { samples: 64 budget { seconds: 1 } }"}},
+      {"verify is set with a model", {"model: BILLIARD verify: true"}},
+      {"the experiment is not known", {"experiment: 99"}},
+      {"the estimate is not known", {"target { estimate: 'heat' }"}}};
   v1::Grid& grid = *spec.mutable_grid();
-  v1::Target& target = *spec.mutable_target();
-  switch (dice.Below(16)) {
-    case 0:
-      grid.clear_rho();
-      return "a list is missing";
-    case 1:
-      target.set_samples(dice.Pick<int64_t>({0, -1, kMaxSamples + 1}));
-      return "the number of samples is outside";
-    case 2:
-      target.set_tolerance(dice.Pick<double>({0, -0.01, 1, 1.5, NAN}));
-      return "the tolerance is outside";
-    case 3:
-      target.set_samples(64);
-      target.mutable_budget()->set_seconds(1);
-      return "a count and a budget";
-    case 4:
-      spec.set_model(v1::EnsembleSpec::BILLIARD);
-      spec.set_verify(true);
-      return "verify is set with a model";
-    case 5:
-      spec.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(kUnknown));
-      return "the experiment is not known";
-    case 6:
-      for (int i = 1; i < kEach; ++i) {
-        grid.add_rho(grid.rho(0));
-        grid.add_delta(grid.delta(0));
-      }
-      return "the grid has too many points";
-    case 7:
-      target.set_estimate("heat");
-      return "the estimate is not known";
-    default:
-      SetValueOutside(dice, parameter, bound_of_delta, grid);
-      return absl::StrCat("a value of ", parameter.name, " is outside");
+  const size_t which = dice.Below(16);
+  if (which < std::size(kDefects)) {
+    const auto& [reason, texts] = kDefects[which];
+    google::protobuf::TextFormat::Parser().MergeFromString(dice.Pick(texts), &spec);
+    return reason;
   }
+  if (which == 6) {
+    grid.clear_rho();
+    return "a list is missing";
+  }
+  if (which == 7) {
+    constexpr int kEach = 317;  // its square is above kMaxPoints
+    for (int i = 1; i < kEach; ++i) {
+      grid.add_rho(grid.rho(0));
+      grid.add_delta(grid.delta(0));
+    }
+    return "the grid has too many points";
+  }
+  SetValueOutside(dice, parameter, bound_of_delta, grid);
+  return absl::StrCat("a value of ", parameter.name, " is outside");
 }
 
 // ---- questions ----
-
-constexpr double kDefects = 1.0 / 7;
 
 class Drawing {
  public:
@@ -209,7 +193,7 @@ class Drawing {
     SetMethod();
     SetTarget();
     Question question = {spec_};
-    if (dice_.Chance(kDefects)) {
+    if (dice_.Chance(1.0 / 7)) {
       const auto& uses = experiment_.parameters;
       const Parameter& parameter = *uses[dice_.Below(uses.size())].parameter;
       question.defect = AddDefect(dice_, parameter, bound_, question.spec);

@@ -1,6 +1,5 @@
 #include "tests/questions/engine.h"
 
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 
@@ -45,7 +44,7 @@ class Asking {
     spec_ = checked.spec;
     report_.Add(CheckRefusal(question_.spec, checked.violations));
     if (checked.violations.empty() && !question_.defect.empty()) {
-      report_.Add({{kRefusalCheck, "is not refused, although " + question_.defect}});
+      report_.Add("refusal", "is not refused, although " + question_.defect);
     }
     if (!checked.violations.empty()) {
       report_.outcome = "refused";
@@ -131,17 +130,14 @@ class ImpatientQueue : public BlockQueue {
 
 // ---- child processes ----
 
-// A report as lines, in memory that child and parent share: the outcome, then check and text of
-// each finding.
-constexpr size_t kMostText = 1 << 20;
-
+// A report as lines: the outcome, then check and text of each finding.
 std::string Text(const Report& report) {
   std::string text = report.outcome;
   for (const Finding& finding : report.findings) {
     absl::StrAppend(&text, "\n", finding.check, "\n",
                     absl::StrReplaceAll(finding.what, {{"\n", " "}}));
   }
-  return text.substr(0, kMostText - 1);
+  return text;
 }
 
 Report ReportFromText(const std::string& text) {
@@ -153,22 +149,21 @@ Report ReportFromText(const std::string& text) {
   return report;
 }
 
-[[noreturn]] void SendReport(const std::function<Report()>& ask, char* shared) {
+[[noreturn]] void SendReport(const std::function<Report()>& ask, const std::string& file) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const rlimit limit = {kMostProcessorSeconds, kMostProcessorSeconds + 1}, no_core = {0, 0};
   setrlimit(RLIMIT_CPU, &limit);
   setrlimit(RLIMIT_CORE, &no_core);
-  const std::string text = Text(ask());
-  std::copy(text.begin(), text.end(), shared);
+  WriteFile(file, Text(ask()));
   _exit(EXIT_SUCCESS);
 }
 
 Finding Death(int status) {
-  if (!WIFSIGNALED(status)) return {kCrashCheck, absl::StrCat("exit code ", WEXITSTATUS(status))};
+  if (!WIFSIGNALED(status)) return {"crash", absl::StrCat("exit code ", WEXITSTATUS(status))};
   if (WTERMSIG(status) != SIGXCPU) {
-    return {kCrashCheck, absl::StrCat("signal ", strsignal(WTERMSIG(status)))};
+    return {"crash", absl::StrCat("signal ", strsignal(WTERMSIG(status)))};
   }
-  return {kEndCheck, absl::StrCat("no end after ", kMostProcessorSeconds, " s of processor time")};
+  return {"end", absl::StrCat("no end after ", kMostProcessorSeconds, " s of processor time")};
 }
 
 }  // namespace
@@ -210,16 +205,15 @@ Report AskEngine(const Question& question, double most_seconds) {
 }
 
 Report InChild(const std::function<Report()>& ask) {
-  void* const shared =
-      mmap(nullptr, kMostText, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  const pid_t child = shared == MAP_FAILED ? -1 : fork();
+  const TemporaryFolder folder;
+  const std::string file = folder.File("report");
+  const pid_t child = fork();
   if (child < 0) throw std::runtime_error(std::strerror(errno));
-  if (child == 0) SendReport(ask, static_cast<char*>(shared));
+  if (child == 0) SendReport(ask, file);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  Report report = ReportFromText(static_cast<char*>(shared));
-  munmap(shared, kMostText);
+  Report report = ReportFromText(Contents(file));
   if (status != 0) {
     report.outcome = "died";
     report.findings.push_back(Death(status));

@@ -61,44 +61,43 @@ TEST(Checks, FindEachDefectAndNothingElse) {
     const char* broken;
   } rows[] = {
       {"a good answer", OfAnswer(error), kNothing},
-      {"an exact value is NaN", OfAnswer(error + " exact: nan"), kFiniteCheck},
-      {"an error of 0", OfAnswer("standard_error: 0"), kFalseZeroCheck},
-      {"an error below the rounding", OfAnswer("standard_error: 1e-17"), kFalseZeroCheck},
-      {"no error", OfAnswer(""), kMeasuredCheck},
+      {"an exact value is NaN", OfAnswer(error + " exact: nan"), "finite"},
+      {"an error of 0", OfAnswer("standard_error: 0"), "false zero"},
+      {"an error below the rounding", OfAnswer("standard_error: 1e-17"), "false zero"},
+      {"no error", OfAnswer(""), "measured"},
       {"no error, and a remark", OfAnswer("", "remarks: 'too few returns'"), kNothing},
-      {"no samples", OfAnswer(error, "samples: 0"), kMeasuredCheck},
-      {"an escape", OfAnswer(error, "health { escapes: 1 }"), kHealthCheck},
+      {"no samples", OfAnswer(error, "samples: 0"), "measured"},
+      {"an escape", OfAnswer(error, "health { escapes: 1 }"), "health"},
       {"a law that does not sum to 1",
-       OfAnswer(error, "histograms { expected_probabilities: 0.99999 }"), kLawCheck},
-      {"a summary with NaN", OfSummary(std::numeric_limits<double>::quiet_NaN()), kFiniteCheck},
+       OfAnswer(error, "histograms { expected_probabilities: 0.99999 }"), "law"},
+      {"a summary with NaN", OfSummary(std::numeric_limits<double>::quiet_NaN()), "finite"},
       {"a good summary", OfSummary(1), kNothing},
       {"a good plan", OfPlan("samples: 64 work: 0.1"), kNothing},
-      {"a plan without samples", OfPlan("samples: 0 work: 0.1"), kPlanCheck},
-      {"a plan without work", OfPlan("samples: 64"), kPlanCheck},
-      {"a plan that takes too long", OfPlan("samples: 64 work: 1e115"), kPlanCheck},
+      {"a plan without samples", OfPlan("samples: 0 work: 0.1"), "plan"},
+      {"a plan without work", OfPlan("samples: 64"), "plan"},
+      {"a plan that takes too long", OfPlan("samples: 64 work: 1e115"), "plan"},
       {"a plan by a model that does not answer", OfPlan("samples: 64 work: 0.1", "model: MARKOV"),
-       kPlanCheck},
+       "plan"},
       {"a good refusal", OfRefusal("spec.grid.rho[0]", kRange), kNothing},
-      {"a refusal of a value that is not there", OfRefusal("spec.grid.rho[1]", kRange),
-       kRefusalCheck},
-      {"a refusal of an unknown field", OfRefusal("spec.grid.radius[0]", kRange), kRefusalCheck},
+      {"a refusal of a value that is not there", OfRefusal("spec.grid.rho[1]", kRange), "refusal"},
+      {"a refusal of an unknown field", OfRefusal("spec.grid.radius[0]", kRange), "refusal"},
       {"a refusal without the value",
-       OfRefusal("spec.grid.rho[0]", "rho is wrong; permitted: (1/2, 1/sqrt(2))"), kRefusalCheck},
-      {"a refusal without the range", OfRefusal("spec.grid.rho[0]", "rho is 0.4"), kRefusalCheck},
+       OfRefusal("spec.grid.rho[0]", "rho is wrong; permitted: (1/2, 1/sqrt(2))"), "refusal"},
+      {"a refusal without the range", OfRefusal("spec.grid.rho[0]", "rho is 0.4"), "refusal"},
       {"two models that agree", OfModels("value: 10.7 standard_error: 0.1"), kNothing},
-      {"two models that differ", OfModels("value: 10.8 standard_error: 0.1"), kAgreementCheck},
+      {"two models that differ", OfModels("value: 10.8 standard_error: 0.1"), "agreement"},
       {"two models that differ by a model error",
        OfModels("value: 10.8 standard_error: 0.1 model_error: 0.2"), kNothing},
       {"distances between laws from equal samples",
-       OfModels("value: 10.8 standard_error: 0.1 noise_floor: 0.1"), kAgreementCheck},
+       OfModels("value: 10.8 standard_error: 0.1 noise_floor: 0.1"), "agreement"},
       {"distances between laws from other samples",
        OfModels("value: 10.8 standard_error: 0.1 noise_floor: 0.1", "samples: 2000"), kNothing},
       {"a model without known error", OfAModelWithoutKnownError(), kNothing},
       {"a model that differs from the exact value",
-       Disagreements({ResultWith(error + " exact: 10.6")}), kAgreementCheck},
+       Disagreements({ResultWith(error + " exact: 10.6")}), "agreement"},
       {"as much memory as planned", CheckMemory(1e8, 1e8 + kMemoryOfAnyAnswer), kNothing},
 #ifndef BALLPISTON_SANITIZED
-      {"too much memory", CheckMemory(1e6, 1e8), kMemoryCheck},
+      {"too much memory", CheckMemory(1e6, 1e8), "memory"},
 #endif
   };
   for (const auto& [name, findings, expected] : rows) {
@@ -137,7 +136,7 @@ TEST(Draw, AsksEveryExperimentByEveryModelWithEveryTarget) {
 
 TEST(Child, ReportsADeath) {
   const std::pair<int, const char*> deaths[] = {
-      {SIGKILL, kCrashCheck}, {SIGXCPU, kEndCheck}};  // as the kernel does when the time is used up
+      {SIGKILL, "crash"}, {SIGXCPU, "end"}};  // as the kernel does when the time is used up
   for (const auto& [signal, check] : deaths) {
     const Report report = InChild([signal = signal]() -> Report {
       raise(signal);

@@ -7,10 +7,6 @@
 namespace ballpiston::questions {
 namespace {
 
-bool MayMissItsTolerance(const v1::Target& target) {
-  return target.has_tolerance() && target.has_budget();
-}
-
 // One question to a server that runs.
 class Conversation {
  public:
@@ -31,8 +27,7 @@ class Conversation {
     request.set_fresh(true);
     const auto job = client_.Create(request);
     if (!job.ok()) return Failed(job.status());
-    const bool is_long = !(plan->work() <= most_seconds);
-    const auto end = is_long ? Cancel(job->name()) : AwaitEnd(job->name());
+    const auto end = AwaitEnd(job->name(), !(plan->work() <= most_seconds));
     if (!end.ok()) return Failed(end.status());
     Judge(*end);
     static_cast<void>(client_.Delete(job->name()));
@@ -49,14 +44,13 @@ class Conversation {
       // What this machine cannot do. The engine knows no machine.
       report_.outcome = "refused here";
       if (!absl::StrContains(status.message(), "permitted")) {
-        report_.Add(
-            {{kRefusalCheck, absl::StrCat("does not say what is permitted: ", status.message())}});
+        report_.Add("refusal", absl::StrCat("does not say what is permitted: ", status.message()));
       }
     } else if (!absl::StrContains(status.message(), violations.front().description)) {
-      report_.Add({{kRefusalCheck, absl::StrCat("not the engine's words: ", status.message())}});
+      report_.Add("refusal", absl::StrCat("not the engine's words: ", status.message()));
     }
     if (const auto job = client_.Create(question_.spec); job.ok()) {
-      report_.Add({{kRefusalCheck, "planning is refused, and running is not"}});
+      report_.Add("refusal", "planning is refused, and running is not");
       static_cast<void>(client_.Cancel(job->name()));
     }
     return std::move(report_);
@@ -64,75 +58,62 @@ class Conversation {
 
   Report Failed(const absl::Status& status) {
     report_.outcome = "failed";
-    report_.Add({{kCallCheck, status.ToString()}});
+    report_.Add("call", status.ToString());
     return std::move(report_);
   }
 
-  bool SpentTooMuch(double start) const {
-    return server_.ProcessorSeconds() - start > kMostProcessorSeconds;
-  }
-
-  // Until the state is `wanted`; an error if the server computes on and on.
+  // Until the state is `wanted`; a finding if the server computes on and on.
   template <typename Wanted>
   absl::StatusOr<v1::EnsembleJob> AwaitState(const std::string& name, Wanted wanted) {
     const double start = server_.ProcessorSeconds();
     absl::StatusOr<v1::EnsembleJob> job;
+    bool takes_too_much = false;
     AwaitThat([&] {
       job = client_.Get(name);
-      return !job.ok() || wanted(job->state()) || SpentTooMuch(start);
+      takes_too_much = server_.ProcessorSeconds() - start > kMostProcessorSeconds;
+      return !job.ok() || wanted(job->state()) || takes_too_much;
     });
     if (job.ok() && !wanted(job->state())) {
-      report_.Add(
-          {{kEndCheck, absl::StrCat("the job is ", v1::EnsembleJob::State_Name(job->state()),
-                                    " after ", kMostProcessorSeconds, " s of processor time")}});
+      report_.Add("end", absl::StrCat("the job is ", v1::EnsembleJob::State_Name(job->state()),
+                                      " after ", kMostProcessorSeconds, " s of processor time"));
     }
     return job;
   }
 
-  absl::StatusOr<v1::EnsembleJob> AwaitEnd(const std::string& name) {
-    return AwaitState(name, client::HasEnded);
-  }
-
-  absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name) {
-    const auto begun = AwaitState(
-        name, [](v1::EnsembleJob::State state) { return state != v1::EnsembleJob::QUEUED; });
-    if (!begun.ok()) return begun.status();
-    const auto cancelled = client_.Cancel(name);
-    if (!cancelled.ok() && !absl::IsFailedPrecondition(cancelled.status())) {
-      return cancelled.status();
+  // The job at its end. If `is_long`, it is cancelled as soon as it runs.
+  absl::StatusOr<v1::EnsembleJob> AwaitEnd(const std::string& name, bool is_long) {
+    if (is_long) {
+      const auto begun =
+          AwaitState(name, [](auto state) { return state != v1::EnsembleJob::QUEUED; });
+      const auto cancelled = begun.ok() ? client_.Cancel(name) : begun;
+      if (!cancelled.ok() && !absl::IsFailedPrecondition(cancelled.status())) return cancelled;
     }
-    return AwaitEnd(name);
+    return AwaitState(name, client::HasEnded);
   }
 
   void Judge(const v1::EnsembleJob& job) {
     report_.Add(CheckFinite(job));
-    switch (job.state()) {
-      case v1::EnsembleJob::SUCCEEDED:
-        report_.outcome = "answered";
-        return JudgeResults(job);
-      case v1::EnsembleJob::CANCELLED:
-        report_.outcome = "cancelled";
-        return;
-      case v1::EnsembleJob::FAILED:
-        report_.outcome = "failed";
-        if (!MayMissItsTolerance(question_.spec.target())) {
-          report_.Add({{kJobCheck, absl::StrCat("the job failed: ", job.error().message())}});
-        }
-        return;
-      default:
-        report_.outcome = "no end";
+    const v1::Target& target = question_.spec.target();
+    const bool may_fail = target.has_tolerance() && target.has_budget();
+    if (job.state() == v1::EnsembleJob::SUCCEEDED) {
+      report_.outcome = "answered";
+      JudgeResults(job);
+    } else if (job.state() == v1::EnsembleJob::CANCELLED) {
+      report_.outcome = "cancelled";
+    } else if (job.state() == v1::EnsembleJob::FAILED) {
+      report_.outcome = "failed";
+      if (!may_fail) report_.Add("job", "the job failed: " + job.error().message());
+    } else {
+      report_.outcome = "no end";
     }
   }
 
   void JudgeResults(const v1::EnsembleJob& job) {
     const auto points = client_.Results(job.name());
-    if (!points.ok()) {
-      Failed(points.status());
-      return;
-    }
+    if (!points.ok()) return static_cast<void>(Failed(points.status()));
     if (static_cast<int>(points->size()) != job.progress().points()) {
-      report_.Add({{kJobCheck, absl::StrCat(points->size(), " results of ", job.progress().points(),
-                                            " points")}});
+      report_.Add("job",
+                  absl::StrCat(points->size(), " results of ", job.progress().points(), " points"));
     }
     for (const v1::PointResult& point : *points) report_.Add(CheckAnswer(question_.spec, point));
   }
@@ -142,11 +123,6 @@ class Conversation {
   const client::Client& client_;
   Report report_;
 };
-
-std::string LastLines(const std::string& log) {
-  constexpr size_t kMost = 600;
-  return log.substr(log.size() - std::min(log.size(), kMost));
-}
 
 struct RunningServer {
   RunningServer() { process.Start(); }
@@ -160,16 +136,18 @@ Report Ask(const Question& question, double most_seconds, std::unique_ptr<Runnin
   try {
     report = Conversation(question, server->process, server->client).Have(most_seconds);
   } catch (const std::runtime_error& late) {  // tests/support/await.h
-    report = {.outcome = "no end", .findings = {{kEndCheck, late.what()}}};
+    report = {.outcome = "no end", .findings = {{"end", late.what()}}};
   }
   // A call may fail a little before the process has ended.
-  const std::chrono::milliseconds patience(report.Breaks(kCallCheck) ? 5000 : 0);
+  const std::chrono::milliseconds patience(report.Breaks("call") ? 5000 : 0);
   if (const auto code = server->process.AwaitEnd(patience)) {
+    const std::string log = server->process.log();
+    const std::string last = log.substr(log.size() - std::min<size_t>(log.size(), 600));
     report.outcome = "died";
-    report.findings = {{kCrashCheck, absl::StrCat("the server ended with exit code ", *code, ": ",
-                                                  LastLines(server->process.log()))}};
+    report.findings = {
+        {"crash", absl::StrCat("the server ended with exit code ", *code, ": ", last)}};
     server.reset();
-  } else if (report.Breaks(kEndCheck)) {
+  } else if (report.Breaks("end")) {
     server.reset();
   }
   return report;

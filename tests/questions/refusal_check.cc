@@ -85,8 +85,7 @@ Findings CheckRefusal(const v1::EnsembleSpec& spec, const std::vector<FieldViola
     const Texts texts = absl::ConsumePrefix(&field, "spec.") ? TextsOf(spec, field) : Texts();
     const auto add_unless = [&](bool is_so, const char* what) {
       if (is_so) return;
-      findings.push_back(
-          {kRefusalCheck, absl::StrCat(what, ": ", violation.field, " ", description)});
+      findings.push_back({"refusal", absl::StrCat(what, ": ", violation.field, " ", description)});
     };
     if (texts.empty()) {
       add_unless(false, "names no field");

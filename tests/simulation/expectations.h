@@ -5,6 +5,15 @@
 #pragma once
 
 #include "ballpiston/v1/ensemble.pb.h"
+#include "core/ensemble/point_fold.h"
+#include "server/convert/deterministic_bytes.h"
+#include "server/convert/errors.h"
+#include "server/convert/point_result.h"
+#include "server/convert/spec.h"
+#include "server/store/job_name.h"
+#include "server/store/job_record.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::server {
@@ -18,11 +27,26 @@ struct Question {
   bool has_key = false;        // all its requests have the same request_id
   bool crashes = false;        // the engine crashes in the last block of each point
 };
-v1::EnsembleSpec SpecOf(const Question& question);
 
 // Every client derives a question from its seed in this way. From kFirstKeyedSeed on it has a key.
 inline constexpr uint64_t kFirstKeyedSeed = 1000;
-Question QuestionOf(uint64_t seed);
+inline Question QuestionOf(uint64_t seed) {
+  const bool has_tolerance = seed % 3 == 0;
+  return {.seed = seed,
+          .points = static_cast<int>(1 + seed % 4),
+          .blocks = static_cast<int64_t>(1 + seed * 7 % (has_tolerance ? 300 : 60)),
+          .has_tolerance = has_tolerance,
+          .has_key = seed >= kFirstKeyedSeed,
+          .crashes = seed == kFirstKeyedSeed + 6 || seed == kFirstKeyedSeed + 9};
+}
+
+inline v1::EnsembleSpec SpecOf(const Question& question) {
+  // For the mean of a uniform law. Some points of about 100 blocks reach it.
+  constexpr double kTolerance = 0.03;
+  v1::EnsembleSpec spec = Equilibrium(question.points, question.blocks, question.seed);
+  if (question.has_tolerance) spec.mutable_target()->set_tolerance(kTolerance);
+  return spec;
+}
 
 class Violation : public std::runtime_error {
  public:
@@ -49,54 +73,209 @@ struct KnownJob {
   int cancels_asked = 0, deletions_asked = 0;
   bool is_cancelled = false, is_deleted = false;  // and the server acknowledged it
 };
+using KnownJobs = std::map<std::string, KnownJob>;  // by id, including deleted jobs
 
 class Expectations {
  public:
-  // The ids of all jobs, including deleted jobs.
-  std::vector<std::string> Ids() const;
-  const std::map<std::string, KnownJob>& all() const { return jobs_; }
+  using State = v1::EnsembleJob::State;
+
+  const KnownJobs& all() const { return jobs_; }
+  std::vector<std::string> Ids() const {
+    std::vector<std::string> ids;
+    for (const auto& [id, job] : jobs_) ids.push_back(id);
+    return ids;
+  }
   // The facts about the job up to now. If no answer named this id, the KnownJob has no facts.
-  KnownJob Known(const std::string& id) const;
+  KnownJob Known(const std::string& id) const { return KnownIn(jobs_, id); }
 
   // ---- answers of calls that began when `before` was known ----
 
-  // `key`: of the request; empty if it has none.
-  void Created(const std::map<std::string, KnownJob>& before, const std::string& key,
-               const Question& question, const v1::EnsembleJob& job);
-  void Got(const KnownJob& before, const v1::EnsembleJob& job);
-  // The job was not found, or was not in the list.
-  void Missed(const std::string& id);
+  // By a call that may be the first that names the job: its Create may have had no answer.
+  void Created(const KnownJobs& before, const Question& question, const v1::EnsembleJob& job) {
+    const std::string id = *JobIdOf(job.name());
+    const auto [known, is_new] = jobs_.try_emplace(id, KnownJob{.question = question});
+    if (known->second.question.seed != question.seed) {
+      throw Violation("another question", id, absl::StrCat("answers the question ", question.seed));
+    }
+    Got(KnownIn(before, id), job);
+  }
+
+  void Got(const KnownJob& before, const v1::EnsembleJob& job) {
+    const std::string id = *JobIdOf(job.name());
+    if (before.is_deleted) throw Violation("deleted", id, "exists again");
+    Saw(id, before, job.state());
+    if (job.progress().points_done() < before.points_done) {
+      throw Violation(
+          "progress", id,
+          absl::StrCat(job.progress().points_done(), " points after ", before.points_done));
+    }
+    if (before.is_cancelled && job.state() < v1::EnsembleJob::CANCELLING) {
+      throw Violation("cancelled", id, absl::StrCat(Text(job.state()), " after its cancellation"));
+    }
+    NoteState(id, job);
+  }
+
+  // The job was not found, or was not in the list. Without a violation, a deletion has taken effect
+  // that had no answer.
+  void Missed(const std::string& id) {
+    if (Known(id).deletions_asked == 0) throw Violation("lost", id, "is not found");
+    jobs_.at(id).is_deleted = true;
+  }
+
   void AskedToCancel(const std::string& id) { ++jobs_.at(id).cancels_asked; }
   void Cancelled(const std::string& id) { jobs_.at(id).is_cancelled = true; }
   void AskedToDelete(const std::string& id) { ++jobs_.at(id).deletions_asked; }
   void Deleted(const std::string& id) { jobs_.at(id).is_deleted = true; }
-  // Refused because the job has ended, or because it has not.
-  void CancelRefused(const std::string& id);
-  void DeletionRefused(const std::string& id, const KnownJob& before);
-  void Listed(const std::map<std::string, KnownJob>& before,
-              const std::vector<v1::EnsembleJob>& jobs);
+
+  // Refused because the job has ended.
+  void CancelRefused(const std::string& id) {
+    --jobs_.at(id).cancels_asked;
+    jobs_.at(id).has_ended = true;
+  }
+  // Refused because the job has not ended.
+  void DeletionRefused(const std::string& id, const KnownJob& before) {
+    --jobs_.at(id).deletions_asked;
+    if (HasEnded(before.state) || before.has_ended) {
+      throw Violation("states", id, "is called active after its end");
+    }
+  }
+
+  void Listed(const KnownJobs& before, const std::vector<v1::EnsembleJob>& jobs) {
+    std::set<std::string> found;
+    std::map<uint64_t, std::string> of_seed;  // jobs of requests with a key
+    for (const v1::EnsembleJob& job : jobs) {
+      const std::string id = *JobIdOf(job.name());
+      if (!found.insert(id).second) throw Violation("list", id, "is in the list twice");
+      Created(before, QuestionOf(job.spec().seed()), job);
+    }
+    for (const auto& [id, known] : before) {
+      if (!found.contains(id) && !known.is_deleted) Missed(id);
+    }
+    // A request with a key has one job, however often it is retried.
+    for (const std::string& id : found) {
+      const KnownJob job = Known(id);
+      if (!job.question.has_key || job.deletions_asked > 0) continue;
+      const auto [first, is_first] = of_seed.try_emplace(job.question.seed, id);
+      if (!is_first) throw Violation("second job", id, absl::StrCat("and ", first->second));
+    }
+  }
+
   // A watch sent this state.
-  void Saw(const std::string& id, const KnownJob& before, v1::EnsembleJob::State state);
+  void Saw(const std::string& id, const KnownJob& before, State state) const {
+    const bool is_older = state < before.state || (HasEnded(before.state) && state != before.state);
+    if (is_older) {
+      throw Violation("states", id, absl::StrCat(Text(state), " after ", Text(before.state)));
+    }
+    if (before.has_ended && !HasEnded(state)) {
+      throw Violation("states", id, Text(state) + " after a refusal that said that it has ended");
+    }
+  }
+
   // `results`: all that the job had when it was read.
   void Read(const std::string& id, const KnownJob& before,
-            const std::vector<v1::PointResult>& results);
+            const std::vector<v1::PointResult>& results) {
+    if (before.is_deleted) throw Violation("deleted", id, "has results again");
+    const int points = CountPoints("results", id, results);
+    if (points < before.points_done) {
+      throw Violation("results", id,
+                      absl::StrCat("has ", points, " results after ", before.points_done));
+    }
+  }
+
   // The finished points that a watch and the watches that it resumes have sent, and the last state.
   // What they told stays true.
-  void Watched(const std::string& id, const std::vector<v1::PointResult>& points,
-               v1::EnsembleJob::State state);
+  void Watched(const std::string& id, const std::vector<v1::PointResult>& points, State state) {
+    const int told = CountPoints("watch", id, points);
+    KnownJob& known = jobs_.at(id);
+    known.state = std::max(known.state, state);
+    known.points_done = std::max(known.points_done, told);
+    if (state == v1::EnsembleJob::SUCCEEDED && told != known.question.points) {
+      throw Violation("watch", id,
+                      absl::StrCat(told, " of ", known.question.points, " points were sent"));
+    }
+  }
 
   // For the last phase, in which nothing fails.
-  void ExpectAllEnded() const;
+  void ExpectAllEnded() const {
+    for (const auto& [id, job] : jobs_) {
+      if (!job.is_deleted && !HasEnded(job.state)) {
+        throw Violation("end", id, absl::StrCat("does not end: ", Text(job.state)));
+      }
+      if (job.is_cancelled && job.state != v1::EnsembleJob::CANCELLED && !job.is_deleted) {
+        throw Violation("cancelled", id, absl::StrCat("ended as ", Text(job.state)));
+      }
+    }
+  }
 
  private:
-  void NoteState(const std::string& id, const v1::EnsembleJob& job);
-  void CheckKeys(const std::set<std::string>& listed) const;
-  void CheckResult(const std::string& id, const Question& question, const v1::PointResult& result);
-  const v1::PointResult& Undisturbed(const Question& question, int point);
-  double SamplesOf(const Question& question);
+  static std::string Text(State state) { return v1::EnsembleJob::State_Name(state); }
 
-  std::map<std::string, KnownJob> jobs_;                             // by id
-  std::map<std::string, std::string> by_key_;                        // ids of requests with a key
+  static KnownJob KnownIn(const KnownJobs& jobs, const std::string& id) {
+    const auto found = jobs.find(id);
+    return found == jobs.end() ? KnownJob() : found->second;
+  }
+
+  void NoteState(const std::string& id, const v1::EnsembleJob& job) {
+    KnownJob& known = jobs_.at(id);
+    const Question& question = known.question;
+    known.state = std::max(known.state, job.state());
+    known.points_done = std::max(known.points_done, job.progress().points_done());
+    const bool may_fail = question.crashes && ReasonOf(job.error()) == "ENGINE_CRASHED";
+    if (job.state() == v1::EnsembleJob::FAILED && !may_fail) {
+      throw Violation("failed", id, job.error().message());
+    }
+    if (job.state() == v1::EnsembleJob::CANCELLED && known.cancels_asked == 0) {
+      throw Violation("cancelled", id, "is cancelled, which nobody asked for");
+    }
+    double all = 0;
+    for (int point = 0; point < question.points; ++point) {
+      all += static_cast<double>(Undisturbed(question, point).samples());
+    }
+    const double samples = job.progress().samples();
+    if (samples > all) throw Violation("samples", id, absl::StrCat(samples, " of ", all));
+    if (job.state() != v1::EnsembleJob::SUCCEEDED) return;
+    if (samples != all || job.progress().points_done() != question.points) {
+      throw Violation("samples", id, absl::StrCat("has succeeded with ", samples, " of ", all));
+    }
+  }
+
+  // Each has the bytes of an undisturbed run, and none is there twice.
+  int CountPoints(const char* check, const std::string& id,
+                  const std::vector<v1::PointResult>& results) {
+    std::set<int> points;
+    for (const v1::PointResult& result : results) {
+      v1::PointResult expected = Undisturbed(Known(id).question, result.index());
+      expected.set_name(ResultName(id, result.index()));
+      const std::string point = absl::StrCat("point ", result.index());
+      if (BytesOf(result) != BytesOf(expected)) {
+        throw Violation("bytes", id, point + " has other bytes: " + result.ShortDebugString());
+      }
+      if (!points.insert(result.index()).second) throw Violation(check, id, point + " comes twice");
+    }
+    return static_cast<int>(points.size());
+  }
+
+  // Without histograms and curves, which watches do not send.
+  static std::string BytesOf(v1::PointResult result) {
+    result.clear_histograms();
+    result.clear_curves();
+    return DeterministicBytes(result);
+  }
+
+  const v1::PointResult& Undisturbed(const Question& question, int point) {
+    const auto [result, is_new] = undisturbed_.try_emplace({question.seed, point});
+    if (!is_new) return result->second;
+    const EnsembleSpec spec = CheckSpec(SpecOf(question)).spec;
+    const auto index = static_cast<size_t>(point);
+    const auto experiment = FakeExperiments()(spec, index);
+    LocalPoint computed(*experiment);
+    while (const std::optional<Block> block = computed.NextBlock()) {
+      computed.Add(*block, RunBlock(*experiment, *block));
+    }
+    return result->second = ResultOf(index, *experiment, experiment->Summarize(computed.Merged()));
+  }
+
+  KnownJobs jobs_;
   std::map<std::pair<uint64_t, int>, v1::PointResult> undisturbed_;  // by seed and point
 };
 

@@ -6,8 +6,10 @@
 #include "server/compute/crash_record.h"
 #include "server/compute/scheduler.h"
 #include "server/compute/thread_executor.h"
+#include "server/host.h"
 #include "server/periodic_thread.h"
 #include "server/store/store.h"
+#include "tests/fault/store/fault_disk.h"
 #include "tests/server/factory_opener.h"
 #include "tests/simulation/cluster.h"
 #include "tests/simulation/machine.h"
@@ -21,36 +23,62 @@ class Life {
   // to machines that share it. `own_folder` has the record of crashes. `crash`: called in the
   // thread in which the engine crashes; empty: the engine does not crash.
   Life(Machine& machine, FakeFiles* shared, const std::string& own_folder,
-       std::function<void()> crash);
-  ~Life();  // stops like a server after SIGTERM
+       std::function<void()> crash)
+      : name(absl::StrCat("life", machine.Bits())),
+        crash_(std::move(crash)),
+        crashes_(std::make_shared<CrashRecord>(own_folder, OutOfMemoryKills())),
+        opener_(ToyExperiments(machine, [this] {
+          if (!is_over && crash_ != nullptr) crash_();
+        })) {
+    if (shared != nullptr) {
+      cluster_.emplace(
+          machine, scheduler_, *shared, [this] { return store_->Flush(); }, crash_ != nullptr);
+    }
+    status = Start();
+  }
+  ~Life() {  // stops like a server after SIGTERM
+    if (book_) book_->Shutdown();
+    limits_.reset();
+    threads_.reset();
+    cluster_.reset();
+    if (store_ != nullptr) store_->Flush().IgnoreError();
+    if (store_ != nullptr) store_->Close();
+  }
 
-  // Not OK: the reason why the server could not start. Then call no other function.
-  const absl::Status& status() const { return status_; }
   Store& store() { return *store_; }
   JobBook& book() { return *book_; }
-  // The name of this server process in the resume tokens of watches.
-  const std::string& name() const { return name_; }
 
-  // From now on clients ignore the answers of this life.
-  void Die() { is_over_ = true; }
-  bool is_over() const { return is_over_; }
+  const std::string name;  // of this server process in the resume tokens of watches
+  absl::Status status;     // not OK: why the server could not start; then call no function
+  bool is_over = false;    // from now on clients ignore its answers
 
  private:
-  absl::Status Start();
+  absl::Status Start() {
+    // Two readers, so that calls wait for one.
+    auto store = Store::Open(kStorePath, {.readers = 2, .reserve_bytes = size_t{256} << 10});
+    if (!store.ok()) return store.status();
+    store_ = *std::move(store);
+    book_.emplace(*store_, Limits(), scheduler_, crashes_);
+    const absl::Status resumed = book_->Resume();
+    if (!resumed.ok()) return resumed;
+    if (cluster_) cluster_->Start();
+    threads_.emplace(scheduler_, kThreads, std::numeric_limits<double>::infinity(), crashes_);
+    threads_->Start();
+    limits_.emplace(std::chrono::seconds(1), [this] { book_->KeepLimits(WallNow()); });
+    return absl::OkStatus();
+  }
 
-  Machine& machine_;
-  const std::string name_;
+  static constexpr int kThreads = 2;
+
   const std::function<void()> crash_;
-  bool is_over_ = false;
-  absl::Status status_;
   const std::shared_ptr<CrashRecord> crashes_;
   std::unique_ptr<Store> store_;
   FactoryOpener opener_;
-  std::unique_ptr<Scheduler> scheduler_;
-  std::unique_ptr<ThreadExecutor> threads_;
-  std::unique_ptr<SimulatedCluster> cluster_;
-  std::unique_ptr<JobBook> book_;
-  std::unique_ptr<PeriodicThread> limits_;
+  Scheduler scheduler_{opener_, kThreads, {.least_seconds_elsewhere = 0}};
+  std::optional<ThreadExecutor> threads_;
+  std::optional<SimulatedCluster> cluster_;
+  std::optional<JobBook> book_;
+  std::optional<PeriodicThread> limits_;
 };
 
 }  // namespace ballpiston::server

@@ -136,11 +136,7 @@ void Machine::GiveUp() {
   SwitchContext(running_->context, outside_);
 }
 
-void Machine::Yield() { Switch(); }
-
 void*& Machine::pointer_of_thread() { return running_->pointer; }
-
-void Machine::SleepUntil(Clock::time_point time) { Await(nullptr, time); }
 
 bool Machine::Await(const void* what, std::optional<Clock::time_point> until) {
   Fiber& self = *running_;
@@ -171,12 +167,6 @@ void Machine::NotifyAll(const void* what) {
     fiber->state = Fiber::State::kReady;
     fiber->was_notified = true;
   }
-}
-
-Machine::Clock::duration Machine::UpTo(Clock::duration most) {
-  const double share = static_cast<double>(random_() >> 11) * 0x1p-53;
-  return Clock::duration(
-      static_cast<Clock::rep>(static_cast<double>(most.count()) * share * share));
 }
 
 // ---- the next thread ----

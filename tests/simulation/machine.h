@@ -35,9 +35,8 @@ class Machine {
   bool Join(Fiber* fiber, Clock::time_point until = Clock::time_point::max());
   // Ends Run, whatever the other threads do. They never run again.
   void GiveUp();
-  void Yield();
-  void Sleep(Clock::duration time) { SleepUntil(now_ + time); }
-  void SleepUntil(Clock::time_point time);
+  void Yield() { Switch(); }
+  void Sleep(Clock::duration time) { Await(nullptr, now_ + time); }
   // Waits for a notification with the same `what`; only the address is compared. False: the time
   // `until` has come.
   bool Await(const void* what, std::optional<Clock::time_point> until = std::nullopt);
@@ -51,11 +50,13 @@ class Machine {
 
   uint64_t Bits() { return random_(); }
   uint64_t Below(uint64_t end) { return random_() % end; }
-  bool Chance(double probability) {
-    return static_cast<double>(random_() >> 11) * 0x1p-53 < probability;
-  }
+  double Uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }  // from [0, 1)
+  bool Chance(double probability) { return Uniform() < probability; }
   // A random time up to `most`. Short times are more frequent.
-  Clock::duration UpTo(Clock::duration most);
+  Clock::duration UpTo(Clock::duration most) {
+    const double share = Uniform();
+    return Clock::duration(static_cast<Clock::rep>(share * share * double(most.count())));
+  }
 
   uint64_t switches() const { return switches_; }  // from thread to thread
 

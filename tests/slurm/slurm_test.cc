@@ -13,11 +13,6 @@ namespace {
 // A pause between two faults, not for an event.
 void Pause(std::chrono::milliseconds time) { std::this_thread::sleep_for(time); }
 
-void SubmitAndAwaitTasks(Sweep& sweep) {
-  sweep.Submit();
-  sweep.AwaitRunningTasks();
-}
-
 // ---- faults ----
 
 // What happens to a sweep, from its submission to its end.
@@ -33,7 +28,7 @@ void PrintTo(const Story& story, std::ostream* out) { *out << story.name; }
 Story ControllerKilledAfter(const char* name, int seconds) {
   return {name, {}, [seconds](Sweep& sweep) {
             sweep.Submit();
-            sweep.AwaitTasks();
+            AwaitThat([&] { return !sweep.cluster().Queue().empty(); });
             Pause(std::chrono::seconds(seconds));
             sweep.cluster().Do("kill-controller");
             Pause(std::chrono::seconds(2));
@@ -43,11 +38,10 @@ Story ControllerKilledAfter(const char* name, int seconds) {
 
 // Verbs of the cluster, one after the other, while tasks run. Slurm notices after five seconds that
 // a node does not answer.
-Story Verbs(const char* name, const std::vector<std::vector<std::string>>& verbs) {
+Story Verbs(const char* name, const std::vector<std::pair<std::string, std::string>>& verbs) {
   return {name, {.cluster = {"SlurmdTimeout=5"}}, [verbs](Sweep& sweep) {
-            SubmitAndAwaitTasks(sweep);
-            for (const auto& verb : verbs)
-              sweep.cluster().Do(verb[0], verb.size() > 1 ? verb[1] : "");
+            sweep.SubmitAndAwaitTasks();
+            for (const auto& [verb, node] : verbs) sweep.cluster().Do(verb, {node});
           }};
 }
 
@@ -56,13 +50,14 @@ void KillServerFourTimes(Sweep& sweep) {
   std::mt19937 random(1);
   for (int kill = 0; kill < 4; ++kill) {
     Pause(std::chrono::milliseconds(500 + random() % 3000));
-    sweep.KillServer();
+    sweep.server().KillHard();
+    sweep.server().Start();
   }
 }
 
 // Its connections stay open, and no answer comes.
 void PauseController(Sweep& sweep) {
-  SubmitAndAwaitTasks(sweep);
+  sweep.SubmitAndAwaitTasks();
   sweep.cluster().Do("pause-controller");
   Pause(std::chrono::seconds(10));
   sweep.cluster().Do("resume-controller");
@@ -70,20 +65,20 @@ void PauseController(Sweep& sweep) {
 
 // Without munge no tool of Slurm works.
 void LoseMunge(Sweep& sweep) {
-  SubmitAndAwaitTasks(sweep);
+  sweep.SubmitAndAwaitTasks();
   sweep.cluster().Do("kill-munge");
   sweep.AwaitProblem("squeue");
   sweep.cluster().Do("start-munge");
 }
 
 void SignalWorkers(Sweep& sweep, int signal) {
-  SubmitAndAwaitTasks(sweep);
-  sweep.AwaitTakenLease();
+  sweep.SubmitAndAwaitTasks();
+  AwaitThat([&] { return !NamesIn(sweep.shared_folder() + "/taken").empty(); });
   for (const pid_t worker : sweep.Workers()) kill(worker, signal);
 }
 
 void PreemptTasks(Sweep& sweep) {
-  SubmitAndAwaitTasks(sweep);
+  sweep.SubmitAndAwaitTasks();
   for (int node = 0; node < 2; ++node) {
     const ProcessResult urgent =
         sweep.cluster().Tool({"sbatch", "-p", "urgent", "--ntasks=4", "--nodes=1",
@@ -137,10 +132,10 @@ std::vector<Story> Stories() {
            [](Sweep& sweep) { SignalWorkers(sweep, SIGSTOP); },
            true},
           {"TasksArePreempted", {.flags = Split("--slurm-partition spare")}, PreemptTasks},
-          {"SlurmForgetsEndedJobs", {.cluster = {"MinJobAge=2"}}, SubmitAndAwaitTasks},
+          {"SlurmForgetsEndedJobs", {.cluster = {"MinJobAge=2"}}, &Sweep::SubmitAndAwaitTasks},
           {"TheClustersArraysAreSmall",
            {.cluster = {"MaxArraySize=3"}, .lease_seconds = 1},
-           SubmitAndAwaitTasks},
+           &Sweep::SubmitAndAwaitTasks},
           {"ThePartitionIsMadeLater",
            {.flags = Split("--slurm-partition late"), .samples = 2'000'000},
            AddPartitionLater},
@@ -153,9 +148,9 @@ TEST_P(SlurmFault, GivesTheSameBytes) {
   Sweep sweep(GetParam().set_up);
   GetParam().tell(sweep);
   sweep.ExpectTheSameBytes();
-  AwaitThat([&] { return sweep.Counts().problem.empty(); });
+  AwaitThat([&] { return sweep.Problem().empty(); });
   if (GetParam().loses_leases) {
-    EXPECT_GT(sweep.Counts().lost, 0);
+    EXPECT_GT(sweep.Status().lost_leases(), 0);
   }
 }
 
@@ -165,8 +160,7 @@ INSTANTIATE_TEST_SUITE_P(All, SlurmFault, testing::ValuesIn(Stories()),
 // Slurm gives the numbers of the lost arrays to other arrays.
 TEST(Slurm, LostStateGivesTheSameBytes) {
   Sweep sweep({.flags = Split("--slurm-max-array-size 4")});
-  sweep.Submit();
-  sweep.AwaitRunningTasks();
+  sweep.SubmitAndAwaitTasks();
   const std::vector<pid_t> lost = sweep.Workers();
   sweep.cluster().Do("kill-controller");
   sweep.cluster().Do("lose-state");
@@ -179,7 +173,7 @@ TEST(Slurm, LostStateGivesTheSameBytes) {
       sweep.cluster().Tool({"sbatch", "--parsable", "--output=/dev/null", "--wrap=sleep 1000"});
   EXPECT_THAT(foreign, ExitsWith(0));
   sweep.ExpectTheSameBytes();
-  AwaitThat([&] { return sweep.Counts().leases == 0; });
+  sweep.AwaitNoLeases();
   EXPECT_EQ(sweep.cluster().Queue().size(), 1u) << "the job of others is cancelled";
 }
 
@@ -188,25 +182,23 @@ TEST(Slurm, LostStateGivesTheSameBytes) {
 // The time-out is long, so no lease is late on a slow machine.
 TEST(Slurm, ASweepOnTheClusterGivesTheSameBytes) {
   Sweep sweep({.timeout_seconds = 900});
-  sweep.Submit();
-  sweep.AwaitRunningTasks();
+  sweep.SubmitAndAwaitTasks();
   sweep.ExpectTheSameBytes();
-  const ClusterCounts counts = sweep.Counts();
-  EXPECT_GT(counts.chunks, 0);
-  EXPECT_EQ(counts.lost, 0);
-  EXPECT_EQ(counts.refused, 0);
-  AwaitThat([&] { return sweep.Counts().problem.empty(); });
+  const v1::ClusterStatus status = sweep.Status();
+  EXPECT_GT(status.chunks(), 0);
+  EXPECT_EQ(status.lost_leases(), 0);
+  EXPECT_EQ(status.refused_files(), 0);
+  AwaitThat([&] { return sweep.Problem().empty(); });
   EXPECT_NE(sweep.cluster().Tool({"sacct"}).exit_code, 0) << "the cluster has accounting";
 }
 
 TEST(Slurm, CancellingTheJobEmptiesTheQueue) {
   Sweep sweep({.samples = 100'000'000});
-  sweep.Submit();
-  sweep.AwaitRunningTasks();
+  sweep.SubmitAndAwaitTasks();
   EXPECT_THAT(sweep.server().Client({"cancel", sweep.job()}), ExitsWith(0));
   AwaitThat([&] { return sweep.cluster().Queue().empty(); });
   AwaitThat([&] { return sweep.Workers().empty(); });
-  AwaitThat([&] { return sweep.Counts().leases == 0; });
+  sweep.AwaitNoLeases();
 }
 
 }  // namespace

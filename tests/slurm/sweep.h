@@ -8,23 +8,36 @@
 
 namespace ballpiston {
 
-// By scripts/test-cluster.sh, which says what its verbs do.
+// By scripts/test-cluster.sh, which says what its verbs do. A verb that fails throws
+// std::runtime_error.
 class Cluster {
  public:
-  // `parameters`: lines of slurm.conf, as NAME=VALUE. Throws std::runtime_error if it does not
-  // start.
-  explicit Cluster(const std::vector<std::string>& parameters = {});
-  ~Cluster() = default;  // stops the cluster; so does the end of this process, whatever ends it
+  // `parameters`: lines of slurm.conf, as NAME=VALUE.
+  explicit Cluster(const Words& parameters) {
+    const std::string stop =
+        absl::StrCat("cat >/dev/null; exec '", script_, "' stop '", path_, "'");
+    keeper_.reset(popen(stop.c_str(), "we"));
+    if (keeper_ == nullptr) throw std::runtime_error("no shell");
+    Do("start", parameters);
+  }
 
-  // A verb of the script, such as Do("kill-node", "n1"). Throws std::runtime_error if it fails.
-  void Do(const std::string& verb, const std::string& node = "") const;
+  // Such as Do("kill-node", {"n1"}).
+  void Do(const std::string& verb, const Words& more = {}) const {
+    const ProcessResult result = RunProgram({.command = Joined({{script_, verb, path_}, more})});
+    if (result.exit_code != 0) throw std::runtime_error(verb + " failed: " + result.err);
+  }
 
   // sbatch, squeue and so on.
-  ProcessResult Tool(std::vector<std::string> words) const;
+  ProcessResult Tool(Words words) const {
+    return RunProgram({.command = std::move(words), .environment = {{"SLURM_CONF", conf()}}});
+  }
   // Lines of squeue: tasks of all users and jobs that wait or run.
-  std::vector<std::string> Queue() const;
+  Words Queue() const {
+    return absl::StrSplit(Tool({"squeue", "--noheader", "-r", "--format=%F|%K|%j|%T|%r"}).out, '\n',
+                          absl::SkipEmpty());
+  }
 
-  std::string conf() const { return folder_.File("cluster/slurm.conf"); }
+  std::string conf() const { return path_ + "/slurm.conf"; }
   const TemporaryFolder& folder() const { return folder_; }
 
  private:
@@ -32,19 +45,12 @@ class Cluster {
     void operator()(std::FILE* pipe) const { pclose(pipe); }
   };
 
+  const std::string script_ = SourcePath("scripts/test-cluster.sh");
   const TemporaryFolder folder_;
-  // A shell that waits for the end of this pipe, and then stops the cluster.
+  const std::string path_ = folder_.File("cluster");
+  // A shell that waits for the end of this pipe, and then stops the cluster: after the destructor,
+  // and after the end of this process, whatever ends it.
   std::unique_ptr<std::FILE, Stop> keeper_;
-};
-
-// Sixteen points; a million samples of each take 20 s of one core.
-inline constexpr int kPoints = 16;
-Words SweepOf(int samples, int seed = 11);
-
-struct ClusterCounts {
-  std::string problem;
-  double leases = 0;
-  double chunks = 0, lost = 0, refused = 0;
 };
 
 struct SweepSetUp {
@@ -52,37 +58,98 @@ struct SweepSetUp {
   Words flags = {};    // of the server
   int lease_seconds = 3;
   int timeout_seconds = 10;  // of a lease
-  int samples = 1'000'000;
+  int samples = 1'000'000;   // of each of the 16 points: 20 s of one core
   int workers = 1;
 };
 
+// The cluster and the server run.
 class Sweep {
  public:
-  explicit Sweep(SweepSetUp set_up = {});  // the cluster and the server run
-  ~Sweep();                                // prints the server's log if the test failed
+  explicit Sweep(SweepSetUp set_up) : set_up_(std::move(set_up)), cluster_(set_up_.cluster) {
+    mkdir(shared_folder().c_str(), 0700);
+    server_.emplace(ServerSetUp{.workers = set_up_.workers,
+                                .flags = Flags(),
+                                .launcher = {"env", "SLURM_CONF=" + cluster_.conf()}});
+  }
+  ~Sweep() {
+    if (testing::Test::HasFailure()) std::cerr << server_->log() << std::endl;
+  }
 
   const Cluster& cluster() const { return cluster_; }
   TestServer& server() { return *server_; }
   std::string shared_folder() const { return cluster_.folder().File("shared"); }
-
-  void Submit();
   const std::string& job() const { return job_; }
-  ClusterCounts Counts() const;
-  void AwaitTasks() const;         // until the cluster has tasks of this server
-  void AwaitRunningTasks() const;  // until workers run
-  void AwaitTakenLease() const;    // until a worker has a lease
-  void AwaitProblem(const std::string& text) const;
-  std::vector<pid_t> Workers() const;  // that compute
-  void KillServer();                   // kill -9, and starts it again on the same data folder
+
+  void Submit() { job_ = server_->Submit(Question(set_up_.samples)); }
+  void SubmitAndAwaitTasks() {
+    Submit();
+    AwaitRunningTasks();
+  }
+  void AwaitRunningTasks() const {
+    AwaitThat([this] { return !Workers().empty(); });
+  }
+  // What the server says about the cluster.
+  v1::ClusterStatus Status() const { return server_->Status().cluster(); }
+  std::string Problem() const { return Status().problem(); }
+  void AwaitProblem(const std::string& text) const {
+    AwaitThat([&] { return absl::StrContains(Problem(), text); });
+  }
+  void AwaitNoLeases() const {
+    AwaitThat([this] { return Status().waiting_leases() + Status().taken_leases() == 0; });
+  }
+  std::vector<pid_t> Workers() const {  // that compute
+    const std::string end(1, '\0');
+    return ProcessesWith(absl::StrCat("ballpiston-worker", end, shared_folder(), end));
+  }
 
   // Waits for the end. The test fails unless the job succeeded, each point has the number of
   // samples that was asked for, and the bytes are those of a server that has threads alone.
-  void ExpectTheSameBytes();
+  void ExpectTheSameBytes() {
+    const std::string points = PointsAtTheEnd(*server_, job_);
+    const auto result = FromJson<file::v1::SavedResult>("{" + points);
+    EXPECT_EQ(result.points_size(), kPoints);
+    for (const v1::PointResult& point : result.points()) {
+      EXPECT_EQ(point.samples(), set_up_.samples);
+    }
+    EXPECT_TRUE(points == PlainPoints(set_up_.samples)) << "other bytes than with threads alone";
+  }
 
  private:
+  static constexpr int kPoints = 16;
+  static Words Question(int samples) {
+    return Joined({Split("first-hit --rho 0.529561127988977 --delta 0.1,0.08,0.06,0.05 --epsilon "
+                         "0.1,0.2,0.3,0.4 --exponent 1 --model billiard --seed 11 --samples"),
+                   {absl::StrCat(samples)}});
+  }
+
+  // A job of a few seconds is large enough, a lease takes some seconds, and Slurm is asked often.
+  Words Flags() const {
+    return Joined({Split("--executor=slurm --cluster-least-seconds 2 --slurm-query-seconds 2"),
+                   {"--cluster-folder", shared_folder()},
+                   {"--cluster-timeout-seconds", absl::StrCat(set_up_.timeout_seconds)},
+                   {"--cluster-lease-seconds", absl::StrCat(set_up_.lease_seconds)},
+                   set_up_.flags});
+  }
+
+  static std::string PointsAtTheEnd(const TestServer& server, const std::string& job) {
+    EXPECT_THAT(server.Client({"watch", job}), ExitsWith(0));
+    const ProcessResult result = server.Client({"result", job, "--format", "json"});
+    EXPECT_THAT(result, ExitsWith(0));
+    return PointsOf(result.out);
+  }
+
+  // By threads alone. Computed once for each number of samples.
+  static const std::string& PlainPoints(int samples) {
+    static std::map<int, std::string> known;
+    std::string& points = known[samples];
+    if (!points.empty()) return points;
+    const TestServer server;
+    return points = PointsAtTheEnd(server, server.Submit(Question(samples)));
+  }
+
   const SweepSetUp set_up_;
   const Cluster cluster_;
-  std::unique_ptr<TestServer> server_;
+  std::optional<TestServer> server_;
   std::string job_;
 };
 

@@ -52,7 +52,7 @@ class DiskFailure : public testing::Test {
 TEST_F(DiskFailure, ADiskErrorAtTheStartIsNotReportedAsDamage) {
   for (const Refusal refusal : {Refusal::kFull, Refusal::kWriteError, Refusal::kSyncError}) {
     FaultDisk disk;
-    disk.Refuse(refusal, 0);
+    disk.Refuse(refusal);
     EXPECT_THAT(Store::Open(kStorePath, {}),
                 StatusIs(absl::StatusCode::kUnavailable,
                          testing::AllOf(HasSubstr("it is unchanged"), Not(HasSubstr("move it")))));
@@ -195,7 +195,7 @@ TEST_F(DiskFailure, OnAFullDiskRecordsThatFitAreWritten) {
 
 TEST_F(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {
   const auto store = Open({.max_pending_bytes = 1000});
-  disk_.Refuse(Refusal::kWriteError, disk_.operation_count());
+  disk_.Refuse(Refusal::kWriteError);
   RecordResult(*store, 0, 1001);
   EXPECT_FALSE(store->Flush().ok());
   std::atomic<bool> has_room = false;

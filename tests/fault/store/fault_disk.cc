@@ -145,19 +145,6 @@ struct Methods {
     return path.starts_with(folder) ? path.substr(folder.size()) : path;
   }
 
-  // Not random: the same trace gives the same bytes.
-  static int Randomness(sqlite3_vfs* vfs, int bytes, char* to) {
-    FaultDisk& disk = Of(vfs);
-    std::lock_guard lock(disk.mutex_);
-    for (int i = 0; i < bytes; ++i) {
-      disk.random_ = disk.random_ * 6364136223846793005u + 1442695040888963407u;
-      to[i] = static_cast<char>(disk.random_ >> 56);
-    }
-    return bytes;
-  }
-
-  static int LastError(sqlite3_vfs*, int, char*) { return 0; }
-
   static constexpr Io kFile = {.iVersion = 2,
                                .xClose = Close,
                                .xRead = PassOn<&Io::xRead>::Call,
@@ -193,8 +180,6 @@ FaultDisk::FaultDisk(DiskFiles files) : name_(UniqueName()), initial_(std::move(
   registered_->xDelete = Methods::Delete;
   registered_->xAccess = Methods::Access;
   registered_->xFullPathname = Methods::FullPathname;
-  registered_->xRandomness = Methods::Randomness;
-  registered_->xGetLastError = Methods::LastError;
   sqlite3_vfs_register(registered_.get(), 1);
 }
 
@@ -206,8 +191,7 @@ bool FaultDisk::Refuses(const DiskOperation& operation) const {
   if (!refusal_) return false;
   const bool meant =
       *refusal_ == Refusal::kSyncError ? operation.kind == DiskOperation::Kind::kSync : is_write;
-  const size_t number = operations_.size();
-  return meant && number >= first_refused_ && number - first_refused_ < refused_count_;
+  return meant && operations_.size() < end_of_refusal_;
 }
 
 bool FaultDisk::OutgrowsCapacity(const DiskOperation& operation) const {
@@ -231,11 +215,10 @@ int FaultDisk::Perform(DiskOperation operation, absl::FunctionRef<int()> perform
   return CodeOf(operation);
 }
 
-void FaultDisk::Refuse(Refusal refusal, size_t first, size_t count) {
+void FaultDisk::Refuse(Refusal refusal, size_t count) {
   std::lock_guard lock(mutex_);
   refusal_ = refusal;
-  first_refused_ = first;
-  refused_count_ = count;
+  end_of_refusal_ = operations_.size() + count;
 }
 
 void FaultDisk::SetCapacity(int64_t bytes) {
@@ -247,11 +230,6 @@ void FaultDisk::StopRefusing() {
   std::lock_guard lock(mutex_);
   refusal_.reset();
   capacity_ = std::numeric_limits<int64_t>::max();
-}
-
-size_t FaultDisk::operation_count() const {
-  std::lock_guard lock(mutex_);
-  return operations_.size();
 }
 
 int64_t FaultDisk::refusals() const {

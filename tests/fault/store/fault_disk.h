@@ -45,15 +45,14 @@ class FaultDisk {
   FaultDisk& operator=(const FaultDisk&) = delete;
 
   // Refuses operations of that kind (a full disk and a write error: writes; a sync error: syncs)
-  // among those with numbers first, first + 1, ..., first + count - 1.
-  void Refuse(Refusal refusal, size_t first, size_t count = std::numeric_limits<size_t>::max() / 2);
+  // among the next `count` ones.
+  void Refuse(Refusal refusal, size_t count = std::numeric_limits<size_t>::max() / 2);
   // Called before each operation of a file, which waits until `call` returns.
   void SetBeforeOperation(std::function<void()> call) { before_operation_ = std::move(call); }
   // Limits the total size of all files.
   void SetCapacity(int64_t bytes);
   void StopRefusing();
 
-  size_t operation_count() const;
   int64_t refusals() const;  // so far
   std::vector<DiskOperation> operations() const;
   int64_t bytes_used() const;
@@ -86,11 +85,9 @@ class FaultDisk {
   int next_file_ = 0;
   std::vector<DiskOperation> operations_;
   std::optional<Refusal> refusal_;
-  size_t first_refused_ = 0;
-  size_t refused_count_ = 0;
+  size_t end_of_refusal_ = 0;  // a number of an operation
   int64_t capacity_ = std::numeric_limits<int64_t>::max();
   int64_t refusals_ = 0;
-  uint64_t random_ = 1;
 };
 
 }  // namespace ballpiston::server

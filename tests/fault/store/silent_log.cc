@@ -1,15 +1,13 @@
 // Switches the log off. These tests make disks fail, and the log would report every failure.
-#include "gtest/gtest.h"
 #include "server/status/log.h"
 
 namespace ballpiston::server {
 namespace {
 
-class SilentLog : public testing::Environment {
-  void SetUp() override { SetLogLevel(Severity::kNone); }
-};
-
-[[maybe_unused]] const auto* const kSilentLog = testing::AddGlobalTestEnvironment(new SilentLog);
+[[maybe_unused]] const bool kIsSilent = [] {
+  SetLogLevel(Severity::kNone);
+  return true;
+}();
 
 }  // namespace
 }  // namespace ballpiston::server

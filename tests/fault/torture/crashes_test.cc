@@ -21,10 +21,6 @@ std::vector<v1::EnsembleSpec> InnocentQuestions() {
   return questions;
 }
 
-v1::EnsembleJob AwaitEnd(const client::Client& client, const std::string& name) {
-  return OrThrow(client.Watch(name, {}, {.give_up_after = absl::FromChrono(kPatience)}));
-}
-
 // Clients that submit all jobs before one of them is computed: the server is killed at once.
 std::vector<std::string> SubmitAll(ConnectedServer& server,
                                    const std::vector<v1::EnsembleSpec>& questions) {

@@ -26,22 +26,50 @@ bool ComesWithStop(std::string_view failpoint) {
   return failpoint.starts_with("stop.") || failpoint.starts_with("checkpoint.");
 }
 
-struct Pace {
+struct Scene {
+  ServerSetUp server = {};
   std::chrono::milliseconds longest_life;
   // If the server does not pass the failpoint within this time, the test kills it.
   std::chrono::milliseconds wait_for_failpoint;
+  std::vector<v1::EnsembleSpec> questions;
+  std::vector<std::string_view> failpoints;
+  int kills = 0;
 };
 
 class Killer {
  public:
-  Killer(ConnectedServer& server, Pace pace, Findings& findings)
-      : server_(server), pace_(pace), findings_(findings) {}
+  Killer(ConnectedServer& server, const Scene& scene, Findings& findings)
+      : server_(server), scene_(scene), findings_(findings) {}
 
+  // Half of them at random, half at failpoints, in turn. Then at each failpoint that is left.
+  void KillManyTimes() {
+    const std::vector<std::string_view>& failpoints = scene_.failpoints;
+    for (int i = 0; i < scene_.kills; ++i) {
+      if (i % 2 == 0) {
+        KillAtRandom();
+      } else {
+        const size_t turn = static_cast<size_t>(i) / 2;
+        KillAt(failpoints[turn % failpoints.size()]);
+      }
+    }
+    int fewest = scene_.kills;
+    for (const std::string_view failpoint : failpoints) {
+      for (int i = 1; i <= kMostFurtherLives && kills_at_[failpoint] == 0; ++i) {
+        KillAt(failpoint, i);
+      }
+      fewest = std::min(fewest, kills_at_[failpoint]);
+      EXPECT_GT(kills_at_[failpoint], 0) << failpoint << " was never passed";
+    }
+    findings_.Count("failpoints", static_cast<int64_t>(failpoints.size()));
+    findings_.Count("fewest kills at one of the failpoints", fewest);
+  }
+
+ private:
   // In one case of four the random life begins with the process, before the server is ready.
   void KillAtRandom() {
     server_.Spawn();
     if (Pick(0, 3) != 0) server_.AwaitReady();
-    const std::chrono::milliseconds life(Pick(0, static_cast<int>(pace_.longest_life.count())));
+    const std::chrono::milliseconds life(Pick(0, static_cast<int>(scene_.longest_life.count())));
     const auto early = server_.AwaitEnd(life);
     if (early) return findings_.Wrong(absl::StrCat("ended by itself: ", server_.log()));
     server_.KillHard();
@@ -56,7 +84,7 @@ class Killer {
       std::this_thread::sleep_for(std::chrono::milliseconds(Pick(0, 300)));
       server_.Signal(SIGTERM);
     }
-    const auto end = server_.AwaitEnd(waits * pace_.wait_for_failpoint);
+    const auto end = server_.AwaitEnd(waits * scene_.wait_for_failpoint);
     if (!end) server_.KillHard();
     const bool stopped = end && *end == 0 && ComesWithStop(failpoint);
     const bool passed = end && !stopped;
@@ -67,14 +95,8 @@ class Killer {
     }
   }
 
-  int KillsAt(std::string_view failpoint) const {
-    const auto found = kills_at_.find(failpoint);
-    return found == kills_at_.end() ? 0 : found->second;
-  }
-
- private:
   std::string Armed(std::string_view failpoint) {
-    const bool first = KillsAt(failpoint) == 0;
+    const bool first = kills_at_[failpoint] == 0;
     const bool when_ready = !failpoint.starts_with("resume.") && (first || Pick(0, 1) == 0);
     const int pass = Pick(1, first ? 1 : MostPasses(failpoint));
     return absl::StrCat(std::string(failpoint), when_ready ? ":ready+" : ":", pass);
@@ -83,34 +105,11 @@ class Killer {
   int Pick(int least, int most) { return std::uniform_int_distribution<int>(least, most)(random_); }
 
   ConnectedServer& server_;
-  const Pace pace_;
+  const Scene& scene_;
   Findings& findings_;
   std::map<std::string_view, int> kills_at_;
   std::mt19937_64 random_{20};
 };
-
-// Half of them at random, half at failpoints, in turn. Then at each failpoint that is left.
-void KillManyTimes(int kills, const std::vector<std::string_view>& failpoints, Killer& killer,
-                   Findings& findings) {
-  for (int i = 0; i < kills; ++i) {
-    if (i % 2 == 0) {
-      killer.KillAtRandom();
-    } else {
-      const size_t turn = static_cast<size_t>(i) / 2;
-      killer.KillAt(failpoints[turn % failpoints.size()]);
-    }
-  }
-  int fewest = kills;
-  for (const std::string_view failpoint : failpoints) {
-    for (int i = 1; i <= kMostFurtherLives && killer.KillsAt(failpoint) == 0; ++i) {
-      killer.KillAt(failpoint, i);
-    }
-    fewest = std::min(fewest, killer.KillsAt(failpoint));
-    EXPECT_GT(killer.KillsAt(failpoint), 0) << failpoint << " was never passed";
-  }
-  findings.Count("failpoints", static_cast<int64_t>(failpoints.size()));
-  findings.Count("fewest kills at one of the failpoints", fewest);
-}
 
 std::set<std::string> NamesOn(ConnectedServer& server) {
   std::set<std::string> names;
@@ -127,14 +126,6 @@ std::vector<std::string_view> Failpoints(bool of_slurm) {
   }
   return failpoints;
 }
-
-struct Scene {
-  ServerSetUp server = {};
-  Pace pace;
-  std::vector<v1::EnsembleSpec> questions;
-  std::vector<std::string_view> failpoints;
-  int kills = 0;
-};
 
 void KillUnderVisitors(const Scene& scene, Findings& findings) {
   Exam exam;
@@ -158,8 +149,7 @@ void KillUnderVisitors(const Scene& scene, Findings& findings) {
     server.Start();
   };
   const auto start = std::chrono::steady_clock::now();
-  Killer killer(server, scene.pace, findings);
-  KillManyTimes(scene.kills, scene.failpoints, killer, findings);
+  Killer(server, scene, findings).KillManyTimes();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   findings.Note("seconds of killing", absl::StrFormat("%.0f", took.count()));
 
@@ -182,8 +172,8 @@ void KillUnderVisitors(const Scene& scene, Findings& findings) {
 TEST(Kills, LoseNothingThatWasAcknowledgedAndCountNothingTwice) {
   Findings findings("kills");
   const std::vector<std::string_view> failpoints = Failpoints(false);
-  KillUnderVisitors({.pace = {.longest_life = std::chrono::milliseconds(600),
-                              .wait_for_failpoint = std::chrono::milliseconds(1500)},
+  KillUnderVisitors({.longest_life = std::chrono::milliseconds(600),
+                     .wait_for_failpoint = std::chrono::milliseconds(1500),
                      .questions = Questions(),
                      .failpoints = failpoints,
                      .kills = Size(8, 1000)},
@@ -206,8 +196,8 @@ TEST(Kills, OfAServerWithAClusterLoseNothingAndCountNothingTwice) {
     for (v1::EnsembleSpec& question : Questions()) questions.push_back(std::move(question));
   }
   KillUnderVisitors({.server = {.workers = 1, .flags = flags, .launcher = slurm.Launcher()},
-                     .pace = {.longest_life = std::chrono::seconds(HoldsToTimes() ? 4 : 2),
-                              .wait_for_failpoint = std::chrono::seconds(6)},
+                     .longest_life = std::chrono::seconds(HoldsToTimes() ? 4 : 2),
+                     .wait_for_failpoint = std::chrono::seconds(6),
                      .questions = std::move(questions),
                      .failpoints = Failpoints(true),
                      .kills = Size(4, 200)},

@@ -43,9 +43,8 @@ void Measure(int workers, const std::string& name, Findings& findings) {
   for (int i = 0; i < Size(2, 30); ++i) {
     const double start = server.ProcessorSeconds();
     const std::string job = OrThrow(client.Create(question)).name();
-    const v1::EnsembleJob end =
-        OrThrow(client.Watch(job, {}, {.give_up_after = absl::FromChrono(kPatience)}));
-    processor.Add(server.ProcessorSeconds() - start, end.work());
+    const double work = AwaitEnd(client, job).work();
+    processor.Add(server.ProcessorSeconds() - start, work);
     findings.Count("jobs");
   }
   findings.Note("processor time beside the workers', " + name, processor.Text());

@@ -1,6 +1,6 @@
 // Faults on purpose: a member that is changed without its mutex, a function that is called without
-// the mutex it requires, and one that is called with the mutex it takes. Clang has to report them
-// (scripts/thread-safety.sh).
+// the mutex it requires, one that is called with the mutex it takes, and two mutexes that are taken
+// in the wrong order. Clang has to report them (scripts/thread-safety.sh).
 #include "server/mutex.h"
 
 namespace ballpiston::server {
@@ -32,6 +32,24 @@ class Counter {
 
   Mutex mutex_;
   int count_ ABSL_GUARDED_BY(mutex_) = 0;
+};
+
+class Accounts {
+ public:
+  void InOrder() {
+    MutexLock first(first_mutex_);
+    MutexLock second(second_mutex_);
+  }
+
+  void InTheOtherOrder() {
+    MutexLock second(second_mutex_);
+    // expected-warning@+1 {{mutex 'first_mutex_' must be acquired before 'second_mutex_'}}
+    MutexLock first(first_mutex_);
+  }
+
+ private:
+  Mutex first_mutex_ ABSL_ACQUIRED_BEFORE(second_mutex_);
+  Mutex second_mutex_;
 };
 
 }  // namespace ballpiston::server
