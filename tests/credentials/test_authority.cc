@@ -3,10 +3,10 @@
 #include <openssl/bio.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
-#include <openssl/rand.h>
 #include <openssl/x509.h>
 #include <openssl/x509v3.h>
 
+#include <atomic>
 #include <stdexcept>
 
 namespace ballpiston {
@@ -25,16 +25,11 @@ Key NewKey() {
   return key;
 }
 
-void SetRandomSerialNumber(X509& certificate) {
-  uint64_t number = 0;
-  Must(RAND_bytes(reinterpret_cast<unsigned char*>(&number), sizeof(number)) == 1);
-  Must(ASN1_INTEGER_set_uint64(X509_get_serialNumber(&certificate), number >> 1) == 1);
-}
-
 Certificate Unsigned(const std::string& common_name, EVP_PKEY& key, Validity validity) {
   const Certificate certificate(X509_new(), &X509_free);
   Must(X509_set_version(certificate.get(), X509_VERSION_3) == 1);
-  SetRandomSerialNumber(*certificate);
+  static std::atomic<int64_t> serial_number = 0;
+  Must(ASN1_INTEGER_set_int64(X509_get_serialNumber(certificate.get()), ++serial_number) == 1);
   X509_gmtime_adj(X509_getm_notBefore(certificate.get()), validity.from.count());
   X509_gmtime_adj(X509_getm_notAfter(certificate.get()), validity.until.count());
   Must(X509_set_pubkey(certificate.get(), &key) == 1);
@@ -85,16 +80,8 @@ TestAuthority::TestAuthority(const std::string& name) : key_(NewKey()) {
 
 std::string TestAuthority::Pem() const { return PemOf(*certificate_); }
 
-KeyAndCertificate TestAuthority::Issue(const std::string& common_name, Validity validity) const {
-  return Issue(common_name, "DNS:localhost,IP:127.0.0.1,IP:::1", validity);
-}
-
-KeyAndCertificate TestAuthority::IssueForHost(const std::string& host) const {
-  return Issue(host, "DNS:" + host, Validity());
-}
-
-KeyAndCertificate TestAuthority::Issue(const std::string& common_name, const std::string& hosts,
-                                       Validity validity) const {
+KeyAndCertificate TestAuthority::Issue(const std::string& common_name, Validity validity,
+                                       const std::string& hosts) const {
   const Key key = NewKey();
   const Certificate certificate = Unsigned(common_name, *key, validity);
   Extend(*certificate, NID_subject_alt_name, hosts);

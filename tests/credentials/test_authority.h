@@ -28,14 +28,14 @@ class TestAuthority {
   std::string Pem() const;
 
   // For localhost, 127.0.0.1 and ::1, as a server or as a client.
-  KeyAndCertificate Issue(const std::string& common_name, Validity validity = {}) const;
+  KeyAndCertificate Issue(const std::string& common_name, Validity validity = {},
+                          const std::string& hosts = "DNS:localhost,IP:127.0.0.1,IP:::1") const;
   // For another host, as a server.
-  KeyAndCertificate IssueForHost(const std::string& host) const;
+  KeyAndCertificate IssueForHost(const std::string& host) const {
+    return Issue(host, {}, "DNS:" + host);
+  }
 
  private:
-  KeyAndCertificate Issue(const std::string& common_name, const std::string& hosts,
-                          Validity validity) const;
-
   std::shared_ptr<EVP_PKEY> key_;
   std::shared_ptr<X509> certificate_;
 };

@@ -2,14 +2,23 @@
 
 namespace ballpiston::server {
 
+using grpc::ByteBuffer;
+using grpc::internal::RpcMethod;
+
+std::string PathOf(const google::protobuf::Descriptor& request) {
+  const google::protobuf::ServiceDescriptor& service = *request.file()->service(0);
+  int i = 0;
+  while (service.method(i)->input_type() != &request) ++i;
+  return "/" + service.full_name() + "/" + service.method(i)->name();
+}
+
+// A unary method is called as a stream of one message.
 NamedCall::NamedCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
-                     const std::vector<std::string>& authorization)
-    : stub_(channel) {
+                     const std::vector<std::string>& authorization) {
   context_.set_deadline(std::chrono::system_clock::now() + kPatience);
   for (const std::string& value : authorization) context_.AddMetadata("authorization", value);
-  call_ = stub_.PrepareCall(&context_, method, &queue_);
-  call_->StartCall(nullptr);
-  started_ = Next();
+  stream_.reset(grpc::internal::ClientReaderWriterFactory<ByteBuffer, ByteBuffer>::Create(
+      channel.get(), RpcMethod(method.c_str(), RpcMethod::BIDI_STREAMING), &context_));
 }
 
 NamedCall::~NamedCall() {
@@ -18,37 +27,20 @@ NamedCall::~NamedCall() {
 }
 
 void NamedCall::Send(const std::string& bytes) {
-  if (!started_) return;
   const grpc::Slice slice(bytes);
-  call_->WriteLast(grpc::ByteBuffer(&slice, 1), {}, nullptr);
-  Next();
-}
-
-void NamedCall::AwaitAnswer() {
-  call_->ReadInitialMetadata(nullptr);
-  Next();
+  stream_->WriteLast(ByteBuffer(&slice, 1), {});
 }
 
 std::optional<std::string> NamedCall::Read() {
-  grpc::ByteBuffer answer;
-  call_->Read(&answer, nullptr);
+  ByteBuffer answer;
   grpc::Slice slice;
-  if (!Next() || !answer.DumpToSingleSlice(&slice).ok()) return std::nullopt;
+  if (!stream_->Read(&answer) || !answer.DumpToSingleSlice(&slice).ok()) return std::nullopt;
   return std::string(slice.begin(), slice.end());
 }
 
 grpc::Status NamedCall::Finish() {
-  if (!status_) {
-    call_->Finish(&status_.emplace(), nullptr);
-    Next();
-  }
+  if (!status_) status_ = stream_->Finish();
   return *status_;
-}
-
-bool NamedCall::Next() {
-  void* tag = nullptr;
-  bool ok = false;
-  return queue_.Next(&tag, &ok) && ok;
 }
 
 grpc::Status CallByName(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,

@@ -1,9 +1,10 @@
 // A call of any method, unary or streaming, by its name.
 #pragma once
 
+#include "google/protobuf/descriptor.h"
 #include "grpcpp/channel.h"
-#include "grpcpp/generic/generic_stub.h"
 #include "grpcpp/grpcpp.h"
+#include "grpcpp/support/sync_stream.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::server {
@@ -15,6 +16,9 @@ inline constexpr char kCheckHealth[] = "/grpc.health.v1.Health/Check";
 inline constexpr char kWatchHealth[] = "/grpc.health.v1.Health/Watch";
 inline constexpr char kReflection[] =
     "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
+
+// The path of the only method that takes such a request. Each .proto file has one service.
+std::string PathOf(const google::protobuf::Descriptor& request);
 
 // A request of a health watch, encoded by hand: an empty field 1 asks for the whole server.
 inline const std::string kWholeServer("\x0a\0", 2);
@@ -29,22 +33,15 @@ class NamedCall {
   NamedCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
             const std::vector<std::string>& authorization = {});
   ~NamedCall();  // cancels it, if it has not ended
-  NamedCall(const NamedCall&) = delete;
-  NamedCall& operator=(const NamedCall&) = delete;
 
-  void Send(const std::string& bytes);  // the only request, serialized
-  void AwaitAnswer();                   // waits until the server sends the first answer
-  std::optional<std::string> Read();    // the next answer; empty at the end of the call
-  grpc::Status Finish();                // waits until the server has ended the call
+  void Send(const std::string& bytes);                       // the only request, serialized
+  void AwaitAnswer() { stream_->WaitForInitialMetadata(); }  // the first one has been sent
+  std::optional<std::string> Read();  // the next answer; empty at the end of the call
+  grpc::Status Finish();              // waits until the server has ended the call
 
  private:
-  bool Next();  // waits for the operation that was begun last; false if it failed
-
   grpc::ClientContext context_;
-  grpc::CompletionQueue queue_;
-  grpc::GenericStub stub_;
-  std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
-  bool started_ = false;
+  std::unique_ptr<grpc::ClientReaderWriter<grpc::ByteBuffer, grpc::ByteBuffer>> stream_;
   std::optional<grpc::Status> status_;
 };
 

@@ -3,7 +3,9 @@
 //   EXPECT_THAT(server.Delete(name), IsError(grpc::StatusCode::NOT_FOUND, "JOB_NOT_FOUND"));
 #pragma once
 
-#include "grpcpp/support/status.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+#include "server/convert/errors.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::server {
@@ -15,8 +17,26 @@ struct ErrorDetails {
   std::vector<std::string> fields;  // the fields of the violations in google.rpc.BadRequest
 };
 
-ErrorDetails DetailsOf(const grpc::Status& status);
-ErrorDetails DetailsOf(const absl::Status& status);
+inline ErrorDetails DetailsOf(const grpc::Status& status) {
+  ErrorDetails details;
+  google::rpc::Status rpc;
+  rpc.ParseFromString(status.error_details());
+  for (const auto& any : rpc.details()) {
+    google::rpc::ErrorInfo info;
+    google::rpc::BadRequest request;
+    if (any.UnpackTo(&info)) {
+      details.reason = info.reason();
+      details.domain = info.domain();
+      details.metadata.insert(info.metadata().begin(), info.metadata().end());
+    }
+    if (!any.UnpackTo(&request)) continue;
+    for (const auto& violation : request.field_violations()) {
+      details.fields.push_back(violation.field());
+    }
+  }
+  return details;
+}
+inline ErrorDetails DetailsOf(const absl::Status& status) { return DetailsOf(GrpcStatus(status)); }
 
 template <typename Result>
 std::string ReasonOf(const Result& result) {

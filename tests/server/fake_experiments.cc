@@ -18,11 +18,9 @@ ChunkPlan FakePlan(const Target& target) {
   return ChunkPlan(kFakeSamplesPerBlock * blocks, Engine::kLanes, 0x1p23);
 }
 
-uint64_t NumberOf(const Block& block) { return block.first / kFakeSamplesPerBlock; }
-
 class FakeExperiment : public PointExperiment {
  public:
-  FakeExperiment(const EnsembleSpec& spec, size_t index, BeforeBlock before_block)
+  FakeExperiment(const EnsembleSpec& spec, size_t index, BeforeBlockOfSeed before_block)
       : PointExperiment(spec, PointAt(spec, index), FakePlan(spec.target)),
         seed_(spec.seed),
         index_(index),
@@ -44,7 +42,7 @@ class FakeExperiment : public PointExperiment {
   }
 
   std::optional<BlockResult> Compute(const Block& block, const std::stop_token& stop) const {
-    if (before_block_) before_block_(index_, NumberOf(block), stop);
+    before_block_(seed_, index_, block.first / kFakeSamplesPerBlock, stop);
     if (stop.stop_requested()) return std::nullopt;
     BlockResult result = EmptyResult();
     result.samples = block.samples;
@@ -56,7 +54,7 @@ class FakeExperiment : public PointExperiment {
 
   const uint64_t seed_;
   const size_t index_;
-  const BeforeBlock before_block_;
+  const BeforeBlockOfSeed before_block_;
 };
 
 LocalPoint AfterBlocks(const PointExperiment& experiment, uint64_t blocks) {
@@ -70,43 +68,16 @@ LocalPoint AfterBlocks(const PointExperiment& experiment, uint64_t blocks) {
 
 }  // namespace
 
-void Gate::Open() {
-  std::lock_guard lock(mutex_);
-  open_ = true;
-  changed_.notify_all();
-}
-
-void Gate::Pass(std::stop_token stop) {
-  std::unique_lock lock(mutex_);
-  ++waiting_;
-  changed_.notify_all();
-  changed_.wait(lock, stop, [this] { return open_; });
-  --waiting_;
-}
-
-void Gate::AwaitWaiting(int count) {
-  std::unique_lock lock(mutex_);
-  AwaitNotified(changed_, lock, [&] { return waiting_ >= count; });
-}
-
-int Gate::waiting() {
-  std::lock_guard lock(mutex_);
-  return waiting_;
-}
-
 ExperimentFactory FakeExperiments(BeforeBlock before_block) {
-  return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index) {
-    return std::make_unique<const FakeExperiment>(spec, index, before_block);
-  };
+  return FakeExperimentsBySeed([before_block = std::move(before_block)](
+                                   uint64_t, size_t point, uint64_t block, std::stop_token stop) {
+    if (before_block) before_block(point, block, stop);
+  });
 }
 
 ExperimentFactory FakeExperimentsBySeed(BeforeBlockOfSeed before_block) {
   return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index) {
-    return std::make_unique<const FakeExperiment>(
-        spec, index,
-        [before_block, seed = spec.seed](size_t point, uint64_t block, std::stop_token stop) {
-          before_block(seed, point, block, stop);
-        });
+    return std::make_unique<const FakeExperiment>(spec, index, before_block);
   };
 }
 

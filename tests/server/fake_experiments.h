@@ -10,11 +10,27 @@ namespace ballpiston::server {
 // Threads that pass the gate wait until it is opened or their stop is requested.
 class Gate {
  public:
-  void Open();
-  void Pass(std::stop_token stop);
+  void Open() {
+    std::lock_guard lock(mutex_);
+    open_ = true;
+    changed_.notify_all();
+  }
+  void Pass(std::stop_token stop) {
+    std::unique_lock lock(mutex_);
+    ++waiting_;
+    changed_.notify_all();
+    changed_.wait(lock, stop, [this] { return open_; });
+    --waiting_;
+  }
   // Returns when that many wait at the closed gate.
-  void AwaitWaiting(int count);
-  int waiting();
+  void AwaitWaiting(int count) {
+    std::unique_lock lock(mutex_);
+    AwaitNotified(changed_, lock, [&] { return waiting_ >= count; });
+  }
+  int waiting() {
+    std::lock_guard lock(mutex_);
+    return waiting_;
+  }
 
  private:
   std::mutex mutex_;

@@ -8,16 +8,13 @@
 //   RunningServer small({.workers = 1, .limits = {.max_streams = 1}});
 #pragma once
 
-#include "ballpiston/v1/analytic.grpc.pb.h"
-#include "ballpiston/v1/ensemble.grpc.pb.h"
-#include "ballpiston/v1/server.grpc.pb.h"
-#include "ballpiston/v1/trace.grpc.pb.h"
-#include "grpcpp/channel.h"
-#include "grpcpp/security/credentials.h"
+#include "ballpiston/v1/ensemble.pb.h"
+#include "ballpiston/v1/server.pb.h"
 #include "server/ballpiston_server.h"
 #include "tests/server/error_details.h"
 #include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/own_channel.h"
 #include "tests/server/requests.h"
 #include "tests/support/preamble.h"
 
@@ -41,63 +38,77 @@ struct TestServerOptions {
 // A channel, and frequent calls on it. Calls that do not return a status expect OK.
 class TestClient {
  public:
-  explicit TestClient(std::shared_ptr<grpc::Channel> channel);
+  explicit TestClient(std::shared_ptr<grpc::Channel> channel) : channel_(std::move(channel)) {}
 
-  std::shared_ptr<grpc::Channel> channel() const { return channel_; }
-  v1::EnsembleService::Stub& ensemble() { return *ensemble_; }
-  v1::AnalyticService::Stub& analytic() { return *analytic_; }
-  v1::TraceService::Stub& trace() { return *trace_; }
+  const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
 
-  grpc::Status Create(const v1::CreateEnsembleJobRequest& request, v1::EnsembleJob* job = nullptr);
-  v1::EnsembleJob Created(const v1::CreateEnsembleJobRequest& request);
-  std::string Submit(const v1::EnsembleSpec& spec);     // creates a new job; its name
-  std::string Succeeded(const v1::EnsembleSpec& spec);  // the same, and waits for success
-  v1::EnsembleJob Get(const std::string& name);
-  grpc::Status Cancel(const std::string& name, const std::string& request_id = "");
-  grpc::Status Delete(const std::string& name);
-  v1::EnsembleJob AwaitEnd(const std::string& name);  // by watching it
-  v1::ServerStatus Status();
+  // A call with one answer. The type of the request decides its method.
+  grpc::Status Call(const google::protobuf::Message& request,
+                    google::protobuf::Message* answer = nullptr) const;
+  template <typename Answer>
+  Answer Answered(const google::protobuf::Message& request) const {
+    Answer answer;
+    EXPECT_OK(Call(request, &answer));
+    return answer;
+  }
 
-  v1::ListEnsembleJobsResponse List(const v1::ListEnsembleJobsRequest& request = {});
-  v1::ListResultsResponse Results(const v1::ListResultsRequest& request);
+  v1::EnsembleJob Created(const v1::CreateEnsembleJobRequest& request) const {
+    return Answered<v1::EnsembleJob>(request);
+  }
+  std::string Submit(const v1::EnsembleSpec& spec) const {  // creates a new job; its name
+    return Created(FreshRequest(spec)).name();
+  }
+  std::string Succeeded(const v1::EnsembleSpec& spec) const;  // the same, and waits for success
+  v1::EnsembleJob Get(const std::string& name) const;
+  grpc::Status Cancel(const std::string& name, const std::string& request_id = "") const;
+  grpc::Status Delete(const std::string& name) const;
+  v1::EnsembleJob AwaitEnd(const std::string& name) const;  // by watching it
+  v1::ServerStatus Status() const {
+    return Answered<v1::ServerStatus>(v1::GetServerStatusRequest());
+  }
+
+  v1::ListEnsembleJobsResponse List(const v1::ListEnsembleJobsRequest& request = {}) const {
+    return Answered<v1::ListEnsembleJobsResponse>(request);
+  }
   // All pages, beginning with the page of `request`.
-  std::vector<v1::ListEnsembleJobsResponse> Pages(v1::ListEnsembleJobsRequest request);
-  std::vector<v1::ListResultsResponse> Pages(v1::ListResultsRequest request);
-  // All results of a job, each serialized.
-  std::vector<std::string> ResultBytes(const std::string& name);
+  template <typename Page, typename Request>
+  std::vector<Page> Pages(Request request) const {
+    std::vector<Page> pages;
+    do {
+      pages.push_back(Answered<Page>(request));
+      request.set_page_token(pages.back().next_page_token());
+    } while (!request.page_token().empty());
+    return pages;
+  }
+  // All results of a job, each serialized, without its name, which has the job's id.
+  std::vector<std::string> ResultBytes(const std::string& name) const;
 
  private:
   std::shared_ptr<grpc::Channel> channel_;
-  std::unique_ptr<v1::EnsembleService::Stub> ensemble_;
-  std::unique_ptr<v1::AnalyticService::Stub> analytic_;
-  std::unique_ptr<v1::TraceService::Stub> trace_;
-  std::unique_ptr<v1::ServerService::Stub> server_;
 };
 
-class RunningServer : public TestClient {
+// Throws, after a failed expectation, if the server does not start.
+struct StartedServer {
+  explicit StartedServer(const TestServerOptions& options);
+
+  const TemporaryFolder folder;  // if the options name no other
+  std::unique_ptr<BallpistonServer> process;
+};
+
+class RunningServer : private StartedServer, public TestClient {
  public:
-  // Throws, after a failed expectation, if the server does not start.
   explicit RunningServer(const TestServerOptions& options = {});
 
-  BallpistonServer& server() { return *server_; }
-  std::string address() const { return server_->address(); }
+  BallpistonServer& server() { return *process; }
+  std::string address() const { return process->address(); }
   // A channel with a connection of its own. Null: without credentials.
   std::shared_ptr<grpc::Channel> NewChannel(
-      const std::shared_ptr<grpc::ChannelCredentials>& credentials = nullptr) const;
-  void Shutdown(std::chrono::milliseconds drain = std::chrono::milliseconds(0)) {
-    server_->Shutdown(drain);
+      const std::shared_ptr<grpc::ChannelCredentials>& credentials = nullptr) const {
+    return OwnChannel(address(), credentials);
   }
-
- private:
-  struct Started {
-    std::unique_ptr<TemporaryFolder> folder;  // null: the test owns the folder
-    std::unique_ptr<BallpistonServer> server;
-  };
-  static Started Start(const TestServerOptions& options);
-  RunningServer(Started started, const std::shared_ptr<grpc::ChannelCredentials>& credentials);
-
-  std::unique_ptr<TemporaryFolder> folder_;
-  std::unique_ptr<BallpistonServer> server_;
+  void Shutdown(std::chrono::milliseconds drain = std::chrono::milliseconds(0)) {
+    process->Shutdown(drain);
+  }
 };
 
 // The error of a server that does not start with these options. OK if it starts.

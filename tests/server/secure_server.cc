@@ -17,24 +17,15 @@ std::string LaboratoryTokens() {
          TokenLine(kBob, {"bob", Role::kSubmit}) + TokenLine(kOps, {"ops", Role::kAdmin});
 }
 
-std::shared_ptr<grpc::ChannelCredentials> TlsCredentials(const std::string& ca) {
-  grpc::SslCredentialsOptions options;
-  options.pem_root_certs = ca;
-  return grpc::SslCredentials(options);
-}
-
 // ---- LaboratoryFiles ----
 
 LaboratoryFiles::LaboratoryFiles() {
-  options_.access_file = Path("access");
-  options_.tls_certificate = Path("server.pem");
-  options_.tls_key = Path("server.key");
   WriteAccessFile(LaboratoryTokens());
   WriteCertificate(authority_.Issue("server-1"));
 }
 
 std::string LaboratoryFiles::Write(const std::string& name, const std::string& text) const {
-  const std::string path = Path(name);
+  const std::string path = folder_.File(name);
   WriteFile(path, text);
   chmod(path.c_str(), 0600);
   return path;
@@ -47,7 +38,9 @@ void LaboratoryFiles::WriteCertificate(const KeyAndCertificate& made) const {
 
 std::shared_ptr<grpc::ChannelCredentials> LaboratoryFiles::Credentials(
     const std::string& token) const {
-  const auto tls = TlsCredentials(authority_.Pem());
+  grpc::SslCredentialsOptions trusted;
+  trusted.pem_root_certs = authority_.Pem();
+  const auto tls = grpc::SslCredentials(trusted);
   if (token.empty()) return tls;
   return grpc::CompositeChannelCredentials(tls, grpc::AccessTokenCredentials(token));
 }

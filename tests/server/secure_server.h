@@ -26,9 +26,6 @@ std::string TokenLine(const std::string& token, const Principal& principal,
                       absl::Time expires = absl::InfiniteFuture());
 std::string LaboratoryTokens();
 
-// TLS to a server with a certificate by the authority `ca` (PEM).
-std::shared_ptr<grpc::ChannelCredentials> TlsCredentials(const std::string& ca);
-
 // A folder with an access file of these tokens, and certificates of an authority of its own.
 class LaboratoryFiles {
  public:
@@ -36,7 +33,6 @@ class LaboratoryFiles {
 
   const DoorOptions& options() const { return options_; }
   const TestAuthority& authority() const { return authority_; }
-  std::string Path(const std::string& name) const { return folder_.File(name); }
 
   // A file of mode 0600.
   std::string Write(const std::string& name, const std::string& text) const;
@@ -48,9 +44,11 @@ class LaboratoryFiles {
   std::shared_ptr<grpc::ChannelCredentials> Credentials(const std::string& token = "") const;
 
  private:
-  TemporaryFolder folder_;
-  TestAuthority authority_{"the laboratory's authority"};
-  DoorOptions options_;
+  const TemporaryFolder folder_;
+  const TestAuthority authority_{"the laboratory's authority"};
+  const DoorOptions options_ = {.access_file = folder_.File("access"),
+                                .tls_certificate = folder_.File("server.pem"),
+                                .tls_key = folder_.File("server.key")};
 };
 
 // These options with the laboratory's TLS, at any free port of this machine. The client of the

@@ -47,30 +47,21 @@ TEST(StartStop, OtherFilesAtASocketsPathStay) {
   close(descriptor);
 }
 
-// The server drops three blocks that never end, and begins no other one.
-TEST(StartStop, StoppingDoesNotWaitForAnEndlessBlock) {
+// A server that waited for these clients would stop after the time to drain, which is long. It
+// drops two blocks that never end, and begins no other one.
+TEST(StartStop, HungClientsAndEndlessBlocksDoNotDelayAStop) {
+  const LaboratoryFiles files;
   Gate gate;
   std::atomic<int> begun = 0;
   RunningServer server(
-      {.workers = 3, .factory = FakeExperiments([&](size_t, uint64_t, std::stop_token stop) {
+      Secure(files, {.factory = FakeExperiments([&](size_t, uint64_t, std::stop_token stop) {
                        ++begun;
                        gate.Pass(stop);
-                     })});
-  server.Submit(Equilibrium(5, 100));
-  gate.AwaitWaiting(3);
-  server.Shutdown(kUnreachedLimit);
-  EXPECT_EQ(begun, 3);
-  EXPECT_EQ(gate.waiting(), 0);
-}
-
-// A server that waited for these clients would stop after the time to drain, which is long.
-TEST(StartStop, HungClientsDoNotDelayAStop) {
-  const LaboratoryFiles files;
-  Gate gate;
-  RunningServer server(
-      Secure(files, {.factory = GatedExperiments(gate), .credentials = files.Credentials(kAlice)}));
+                     }),
+                     .credentials = files.Credentials(kAlice)}));
   v1::WatchEnsembleJobRequest request;
   request.set_name(server.Submit(Equilibrium(1000, 1)));
+  gate.AwaitWaiting(2);
   const Connection no_handshake(server.address());
   Connection half_a_handshake(server.address());
   half_a_handshake.Send("\x16\x03\x01");
@@ -83,6 +74,8 @@ TEST(StartStop, HungClientsDoNotDelayAStop) {
   const NamedCall without_message(server.channel(), kGetJob);
   server.Shutdown(kUnreachedLimit);
   EXPECT_THAT(CallByName(server.channel(), kCheckHealth), StatusIs(grpc::StatusCode::UNAVAILABLE));
+  EXPECT_EQ(begun, 2);
+  EXPECT_EQ(gate.waiting(), 0);
 }
 
 TEST(StartStop, AServerWithoutCallsAndJobsIsIdle) {
@@ -108,14 +101,6 @@ std::string HealthOf(RunningServer& server, const std::string& service) {
 
 constexpr char kServing[] = "\x08\x01";
 
-TEST(StartStop, HealthIsServedForTheWholeAndForEachService) {
-  RunningServer server;
-  for (const char* service : {"", "ballpiston.v1.EnsembleService", "ballpiston.v1.AnalyticService",
-                              "ballpiston.v1.TraceService", "ballpiston.v1.ServerService"}) {
-    EXPECT_EQ(HealthOf(server, service), kServing) << service;
-  }
-}
-
 // A call that waited for the disk would keep its thread.
 TEST(StartStop, WhileTheDiskHangsCallsThatWriteAreRefusedAndReadsAnswered) {
   FaultDisk disk;
@@ -125,14 +110,17 @@ TEST(StartStop, WhileTheDiskHangsCallsThatWriteAreRefusedAndReadsAnswered) {
   const auto is_serving = [&] {
     return HealthOf(server, "ballpiston.v1.EnsembleService") == kServing;
   };
+  AwaitThat(is_serving);
   hangs = true;
-  const auto waiting = std::async([&] { server.Create(CreateRequest(Equilibrium(1, 1))); });
+  const auto waiting = std::async([&] { server.Call(CreateRequest(Equilibrium(1, 1))); });
   AwaitThat([&] { return !is_serving(); });
-  EXPECT_EQ(HealthOf(server, ""), kServing);
-  EXPECT_EQ(HealthOf(server, "ballpiston.v1.AnalyticService"), kServing);
+  for (const char* service : {"", "ballpiston.v1.AnalyticService", "ballpiston.v1.TraceService",
+                              "ballpiston.v1.ServerService"}) {
+    EXPECT_EQ(HealthOf(server, service), kServing) << service;
+  }
   EXPECT_EQ(server.Status().state(), v1::ServerStatus::STORE_FAILING);
   for (int i = 0; i < 20; ++i) {
-    EXPECT_THAT(server.Create(CreateRequest(Equilibrium(1, 1))),
+    EXPECT_THAT(server.Call(CreateRequest(Equilibrium(1, 1))),
                 IsError(grpc::StatusCode::UNAVAILABLE, "STORE_FAILED"));
     EXPECT_EQ(server.List().jobs_size(), 0);
   }

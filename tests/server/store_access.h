@@ -3,6 +3,7 @@
 
 #include <type_traits>
 
+#include "server/store/job_name.h"
 #include "server/store/job_table.h"
 #include "server/store/sqlite.h"
 #include "server/store/store.h"
@@ -25,21 +26,14 @@ inline void ChangeStore(const std::string& path, const std::string& sql) {
   ASSERT_OK(database->status());
 }
 
-// Changes all jobs in the file of a store that no server has open.
-inline void ChangeJobs(const std::string& path,
-                       const std::function<void(v1::EnsembleJob& job)>& change) {
+// Changes a job in the file of a store that no server has open.
+inline void ChangeJob(const std::string& path, const std::string& name,
+                      const std::function<void(v1::EnsembleJob& job)>& change) {
   ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(path, {.stall = kUnreachedLimit}));
   ASSERT_OK(store->Commit([&](Database& database) {
-    std::vector<JobRecord> records;
-    ReadJobs(database, std::nullopt, std::numeric_limits<int64_t>::max(), Grid::kIncluded,
-             [&](JobRecord record) {
-               records.push_back(std::move(record));
-               return true;
-             });
-    for (JobRecord& record : records) {
-      change(record.job);
-      UpdateJob(database, record);
-    }
+    std::optional<JobRecord> record = FindJob(database, *JobIdOf(name), Grid::kIncluded);
+    change(record.value().job);
+    UpdateJob(database, *record);
   }));
 }
 

@@ -18,39 +18,6 @@ class AcceptanceTest : public BookTest {
     EXPECT_NE(job.name(), JobName(earlier));
     EXPECT_FALSE(job.answered_from_store());
   }
-
-  // With three jobs of ann that wait at the gate, of one point each, her request is refused because
-  // of the limit of 3.
-  void ExpectLimit(const Limits& limits, const std::string& reason, const std::string& flag,
-                   const std::string& advice,
-                   const v1::EnsembleSpec& refused_spec = Equilibrium(1, 1)) {
-    SCOPED_TRACE(flag);
-    const std::string request_id =
-        "123e4567-e89b-12d3-a456-42661417400" + std::to_string(checked_++);
-    Start(limits);
-    std::vector<std::string> held;
-    for (int i = 0; i < 3; ++i)
-      held.push_back(Id(kAnn, FreshRequest(Equilibrium(1, 3, kHeldSeed))));
-    for (int repeated = 0; repeated < 2; ++repeated) {  // a refused job does not count
-      const auto refused = Create(kAnn, FreshRequest(refused_spec, request_id));
-      EXPECT_THAT(refused, IsError(absl::StatusCode::kResourceExhausted, reason));
-      EXPECT_THAT(std::string(refused.status().message()),
-                  AllOf(HasSubstr("--" + flag), HasSubstr(": " + advice)));
-      const ErrorDetails details = DetailsOf(refused.status());
-      EXPECT_EQ(details.domain, "ballpiston");
-      EXPECT_EQ(details.metadata.at("flag"), flag);
-      EXPECT_EQ(details.metadata.at("limit"), "3");
-    }
-    for (const std::string& id : held) {
-      ASSERT_OK(book_->Cancel(kAnn, id, ""));
-      AwaitEnd(id);
-    }
-    // There is room now, and no job was created with the id.
-    AwaitEnd(Id(kAnn, FreshRequest(Equilibrium(1, 1), request_id)));
-  }
-
- private:
-  int checked_ = 0;
 };
 
 // ---- the same question ----
@@ -70,16 +37,12 @@ TEST_F(AcceptanceTest, TheSameQuestionIsAnsweredByTheJobThatSucceeded) {
   EXPECT_EQ(List(Query(), kRoot).jobs.size(), 1u);
 }
 
-TEST_F(AcceptanceTest, AnotherQuestionAndAFreshAnswerAreComputed) {
+// An administrator can see the job, but it is the answer to another principal.
+TEST_F(AcceptanceTest, OtherQuestionsPrincipalsAndFreshAnswersAreComputed) {
   const std::string first = Answered(kAnn, CreateRequest(Question()));
   ExpectComputed(kAnn, FreshRequest(Question()), first);
   ExpectComputed(kAnn, CreateRequest(Question(2)), first);
-}
-
-TEST_F(AcceptanceTest, AnswersAreOnlyForTheirPrincipal) {
-  const std::string first = Answered(kAnn, CreateRequest(Question()));
   ExpectComputed(kBen, CreateRequest(Question()), first);
-  // An administrator can see the job, but it is the answer to another principal.
   ExpectComputed(kRoot, CreateRequest(Question()), first);
 }
 
@@ -88,33 +51,16 @@ TEST_F(AcceptanceTest, OnlyAJobThatSucceededAnswersAgain) {
   budget.mutable_target()->Clear();
   budget.mutable_target()->mutable_budget()->set_nanos(1);  // its answer depends on the machine
   ExpectComputed(kAnn, CreateRequest(budget), Answered(kAnn, CreateRequest(budget)));
-  const std::string failed = Id(kAnn, CreateRequest(Question(kFailingSeed)));
+  const auto failing = CreateRequest(Question(kFailingSeed));
+  const std::string failed = Id(kAnn, failing);
   EXPECT_EQ(AwaitEnd(failed), EnsembleJob::FAILED);
-  ExpectComputed(kAnn, CreateRequest(Question(kFailingSeed)), failed);
-  const std::string held = Id(kAnn, CreateRequest(Question(kHeldSeed)));
-  ExpectComputed(kAnn, CreateRequest(Question(kHeldSeed)), held);
+  ExpectComputed(kAnn, failing, failed);
+  const auto waiting = CreateRequest(Question(kHeldSeed));
+  const std::string held = Id(kAnn, waiting);
+  ExpectComputed(kAnn, waiting, held);
   ASSERT_OK(book_->Cancel(kAnn, held, ""));
   EXPECT_EQ(AwaitEnd(held), EnsembleJob::CANCELLED);
-  ExpectComputed(kAnn, CreateRequest(Question(kHeldSeed)), held);
-}
-
-TEST_F(AcceptanceTest, AnswersAreOnlyForTheirEngine) {
-  for (const std::string& engine : {std::string("0.0.1"), EngineVersion()}) {
-    JobRecord record;
-    record.id = "of-" + std::to_string(engine == EngineVersion());
-    record.question = QuestionOf(Question(), engine);
-    record.job.set_principal(kAnn.name);
-    *record.job.mutable_spec() = Question();
-    record.job.set_engine_version(engine);
-    record.job.mutable_progress()->set_points(2);
-    ASSERT_OK(store_->Commit([&](Database& database) {
-      InsertJob(database, record);
-      EndJob(database, record.sequence, JobEnd());
-    }));
-  }
-  EXPECT_EQ(Id(kAnn, CreateRequest(Question())), "of-1");
-  ASSERT_OK(book_->Delete(kAnn, "of-1"));
-  EXPECT_NE(Id(kAnn, CreateRequest(Question())), "of-0");
+  ExpectComputed(kAnn, waiting, held);
 }
 
 // ---- which questions are the same ----
@@ -153,70 +99,54 @@ void ChangeEachField(google::protobuf::Message& message,
   }
 }
 
-TEST(Question, EveryFieldOfTheSpecificationIsPartOfIt) {
-  v1::EnsembleSpec spec = Question();
-  std::map<std::string, std::string> fields = {{QuestionOf(spec, "1"), "none"}};
-  ChangeEachField(spec, [&](const FieldDescriptor& field) {
-    const std::string question = QuestionOf(spec, "1");
-    if (spec.target().has_budget()) {
-      EXPECT_EQ(question, "") << field.full_name();  // it has no answer
-      return;
-    }
-    EXPECT_NE(question, "");
-    const auto [same, is_new] = fields.emplace(question, field.full_name());
-    EXPECT_TRUE(is_new) << field.full_name() << " makes the same question as " << same->second;
-  });
-  EXPECT_GE(fields.size(), 15u);
-}
-
-TEST(Question, TheDefaultEstimateMayBeNamedOrLeftOut) {
-  v1::EnsembleSpec gas = Question();
-  gas.set_experiment(v1::EnsembleSpec::GAS_EQUILIBRIUM);
-  const auto question_of = [&gas](const std::string& estimate) {
-    gas.mutable_target()->set_estimate(estimate);
-    return QuestionOf(gas, "1") + " " + PayloadOf(CreateRequest(gas, kUuid));
-  };
-  EXPECT_EQ(question_of("exchange_rate"), question_of(""));
-  EXPECT_NE(question_of("conductivity"), question_of(""));
-  EXPECT_NE(question_of("unknown"), question_of(""));
-  gas.set_experiment(v1::EnsembleSpec::GAS_CONDUCTION);
-  EXPECT_EQ(question_of("heat_current"), question_of(""));
-  EXPECT_NE(question_of("exchange_rate"), question_of(""));
-  // A newer client can name an experiment that this server does not know.
-  gas.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(999));
-  EXPECT_NE(question_of("exchange_rate"), question_of(""));
-}
-
-TEST(Question, DefaultValuesMayBeNamedOrLeftOutAndColumnsHaveNoOrder) {
-  v1::EnsembleSpec named = Question();
-  named.set_model(v1::EnsembleSpec::AUTO);
-  named.set_precision(v1::EnsembleSpec::DOUBLE);
-  named.mutable_target()->set_samples(kDefaultSamples);
-  for (const char* column : {"rho", "delta"}) named.mutable_grid()->add_table(column);
-  v1::EnsembleSpec left_out = named;
-  left_out.mutable_grid()->mutable_table()->SwapElements(0, 1);
-  left_out.clear_model();
-  left_out.clear_precision();
-  left_out.clear_target();
-  EXPECT_EQ(QuestionOf(named, "1"), QuestionOf(left_out, "1"));
-  EXPECT_EQ(FamilyOf(named, "1"), FamilyOf(left_out, "1"));
-  EXPECT_EQ(PayloadOf(CreateRequest(named, kUuid)), PayloadOf(CreateRequest(left_out, kUuid)));
-}
-
-// A retry may have other labels: they are added to the job.
-TEST(Payload, EveryFieldExceptTheIdAndTheLabelsIsPartOfTheHash) {
+// A retry may have other labels. A question has a whole specification, a family has one without the
+// number that its target asks for; a job with a budget has neither.
+TEST(Payload, QuestionAndFamilyDependOnTheirFieldsOnly) {
   v1::CreateEnsembleJobRequest request = CreateRequest(Question(), kUuid);
-  const std::string payload = PayloadOf(request);
-  std::map<std::string, std::string> fields = {{payload, "none"}};
+  const auto question_of = [&](const char* engine) { return QuestionOf(request.spec(), engine); };
+  const auto family_of = [&](const char* engine) { return FamilyOf(request.spec(), engine); };
+  const std::string payload = PayloadOf(request), family = family_of("1");
+  std::set<std::string> payloads = {payload}, questions = {question_of("1"), family},
+                        families = {family};
+  for (const std::string& other : {question_of("2"), family_of("2")}) {
+    EXPECT_TRUE(questions.insert(other).second);
+  }
   ChangeEachField(request, [&](const FieldDescriptor& field) {
-    if (field.name() == "request_id") {
-      EXPECT_EQ(PayloadOf(request), payload);
+    SCOPED_TRACE(field.full_name());
+    EXPECT_EQ(payloads.insert(PayloadOf(request)).second, field.name() != "request_id");
+    if (request.spec().target().has_budget()) {
+      EXPECT_EQ(question_of("1") + family_of("1"), "");
       return;
     }
-    const auto [same, is_new] = fields.emplace(PayloadOf(request), field.full_name());
-    EXPECT_TRUE(is_new) << field.full_name() << " makes the same payload as " << same->second;
+    const bool is_in_spec = field.containing_type() != request.GetDescriptor();
+    EXPECT_EQ(questions.insert(question_of("1")).second, is_in_spec);
+    EXPECT_EQ(families.insert(family_of("1")).second,
+              is_in_spec && field.real_containing_oneof() == nullptr);
   });
-  EXPECT_GE(fields.size(), 18u);
+  EXPECT_GE(payloads.size(), 18u);
+}
+
+// The default estimate and default values may be named or left out, and columns have no order.
+TEST(Question, IsThatOfAnotherTextWithTheSameMeaning) {
+  const auto all_of = [](const std::string& text) {
+    const auto spec = FromText<v1::EnsembleSpec>("grid { rho: 0.53 delta: 0.1 } " + text);
+    return std::tuple(QuestionOf(spec, "1"), FamilyOf(spec, "1"), PayloadOf(CreateRequest(spec)));
+  };
+  const std::string gas = "experiment: GAS_EQUILIBRIUM ", steady = "experiment: GAS_CONDUCTION ";
+  const std::string unknown = "experiment: 999 ";  // of a newer client
+  const std::string rate = "target { estimate: 'exchange_rate' }";
+  const std::string defaults =
+      "model: AUTO precision: DOUBLE target { samples: " + std::to_string(kDefaultSamples) + " } ";
+  EXPECT_EQ(all_of(gas + rate), all_of(gas));
+  EXPECT_EQ(all_of(steady + "target { estimate: 'heat_current' }"), all_of(steady));
+  EXPECT_EQ(all_of(gas + defaults + "grid { table: ['rho', 'delta'] }"),
+            all_of(gas + "grid { table: ['delta', 'rho'] }"));
+  for (const auto& [other, experiment] : {std::pair("target { estimate: 'conductivity' }", gas),
+                                          {"target { estimate: 'unknown' }", gas},
+                                          {rate.c_str(), steady},
+                                          {rate.c_str(), unknown}}) {
+    EXPECT_NE(all_of(experiment + other), all_of(experiment)) << experiment << other;
+  }
 }
 
 // ---- the same request ----
@@ -308,22 +238,60 @@ TEST_F(AcceptanceTest, OnlyTheRequestThatMadeTheJobIsStored) {
     EXPECT_EQ(again.name(), JobName(id));
     EXPECT_TRUE(again.answered_from_store());
   }
-  const auto requests = ReadFrom(*store_, [](Database& database) {
-    return database.All<std::string>("SELECT request_id FROM jobs");
-  });
-  EXPECT_THAT(requests, ElementsAre(kUuid));
+  const auto column = [this](const std::string& name) {
+    return ReadFrom(*store_, [&](Database& database) {
+      return database.All<std::string>("SELECT " + name + " FROM jobs");
+    });
+  };
+  EXPECT_THAT(column("request_id"), ElementsAre(kUuid));
+  // Answers are only for their engine.
+  EXPECT_THAT(column("question"), ElementsAre(QuestionOf(Question(), EngineVersion())));
 }
 
 // ---- limits ----
 
+// Three jobs of ann, of one point each, wait at the gate. A rejected job does not count.
 TEST_F(AcceptanceTest, EachLimitNamesItsReasonAndItsFlag) {
-  const std::string wait = "wait until some jobs have ended, or cancel some of yours";
-  ExpectLimit({.max_active_jobs_per_principal = 3}, "TOO_MANY_JOBS",
-              "max-active-jobs-per-principal", wait);
-  ExpectLimit({.max_active_points_per_principal = 3}, "TOO_MANY_ACTIVE_POINTS",
-              "max-active-points-per-principal", wait);
-  ExpectLimit({.max_points_per_job = 3}, "TOO_MANY_POINTS", "max-points-per-job",
-              "split it between several jobs", Equilibrium(4, 1));
+  const std::string wait = ": wait until some jobs have ended, or cancel some of yours";
+  const struct {
+    Limits limits;
+    int points;  // of the rejected job
+    std::string reason, flag, advice;
+  } rows[] = {{{.max_active_jobs_per_principal = 3},
+               1,
+               "TOO_MANY_JOBS",
+               "max-active-jobs-per-principal",
+               wait},
+              {{.max_active_points_per_principal = 3},
+               1,
+               "TOO_MANY_ACTIVE_POINTS",
+               "max-active-points-per-principal",
+               wait},
+              {{.max_points_per_job = 3},
+               4,
+               "TOO_MANY_POINTS",
+               "max-points-per-job",
+               ": split it between several jobs"}};
+  for (const auto& row : rows) {
+    Start(row.limits);
+    std::vector<std::string> held;
+    for (int i = 0; i < 3; ++i)
+      held.push_back(Id(kAnn, FreshRequest(Equilibrium(1, 3, kHeldSeed))));
+    for (int repeated = 0; repeated < 2; ++repeated) {
+      const auto refused = Create(kAnn, FreshRequest(Equilibrium(row.points, 1), kUuid));
+      EXPECT_THAT(refused, IsError(absl::StatusCode::kResourceExhausted, row.reason));
+      EXPECT_THAT(refused, StatusIs(absl::StatusCode::kResourceExhausted,
+                                    AllOf(HasSubstr("--" + row.flag), HasSubstr(row.advice))));
+      EXPECT_THAT(DetailsOf(refused.status()).metadata,
+                  AllOf(Contains(Pair("flag", row.flag)), Contains(Pair("limit", "3"))));
+    }
+    for (const std::string& id : held) {
+      ASSERT_OK(book_->Cancel(kAnn, id, ""));
+      AwaitEnd(id);
+    }
+    // There is room now, and no job was created with the id.
+    ASSERT_OK(book_->Delete(kAnn, Answered(kAnn, FreshRequest(Equilibrium(1, 1), kUuid))));
+  }
 }
 
 TEST_F(AcceptanceTest, RetriesAndStoredAnswersIgnoreALowerLimit) {

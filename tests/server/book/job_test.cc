@@ -133,12 +133,11 @@ TEST(JobName, OnlyJobsAndResultsHaveTheirNames) {
   EXPECT_EQ(ResultIdOf("ensembleJobs/a-1/results/7")->job, "a-1");
   EXPECT_EQ(ResultIdOf("ensembleJobs/a-1/results/4294967296")->point, 4'294'967'296);
   for (const std::string& name :
-       {std::string(), std::string("ensembleJobs/"), std::string("ensembleJobs/A"),
-        std::string("ensembleJobs/a/b"), "ensembleJobs/" + std::string(64, 'a'), std::string("a"),
-        std::string("ensembleJobs/a b"), std::string("ensembleJobs/a/results/"),
-        std::string("ensembleJobs/a/results/-1"), std::string("ensembleJobs/a/results/07"),
-        std::string("ensembleJobs/A/results/7"), std::string("results/7"),
-        std::string("ensembleJobs/a/results/99999999999999999999")}) {
+       std::vector<std::string>{"", "ensembleJobs/", "ensembleJobs/A", "ensembleJobs/a/b",
+                                "ensembleJobs/" + std::string(64, 'a'), "a", "ensembleJobs/a b",
+                                "ensembleJobs/a/results/", "ensembleJobs/a/results/-1",
+                                "ensembleJobs/a/results/07", "ensembleJobs/A/results/7",
+                                "results/7", "ensembleJobs/a/results/99999999999999999999"}) {
     EXPECT_EQ(JobIdOf(name), std::nullopt) << name;
     EXPECT_FALSE(ResultIdOf(name)) << name;
   }

@@ -20,28 +20,25 @@ EnsembleSpec SomeSpec() { return SpecOf(kFirstHit, Model::kBilliard, 100'000); }
 class FolderExecutorTest : public testing::Test {
  protected:
   FolderExecutorTest() { Restart(); }
-  ~FolderExecutorTest() override { scheduler_->Shutdown(); }
 
   // A new process of the server, with the same folder.
   void Restart(ClusterOptions options = {.look = milliseconds(0), .least_waiting = 2}) {
-    if (scheduler_ != nullptr) scheduler_->Shutdown();
     executor_.reset();
-    local_.reset();
-    scheduler_ =
-        std::make_unique<Scheduler>(opener_, 1, SchedulerOptions{.least_seconds_elsewhere = 0});
-    local_ = std::make_unique<SteppedExecutor>(*scheduler_);
+    stepped_.emplace(
+        [](const EnsembleSpec& spec, size_t point) { return PointExperiment::Create(spec, point); },
+        SchedulerOptions{.least_seconds_elsewhere = 0});
     options.lease = milliseconds(0);  // one chunk
     executor_ = std::make_unique<FolderExecutor>(
-        *scheduler_, options, std::make_unique<FakeFiles>(files_),
+        stepped_->scheduler_, options, std::make_unique<FakeFiles>(files_),
         FolderExecutor::Server{.identity = "me",
                                .flush = [this] { return flush_; },
                                .prepare = [this] { return prepare_; }});
   }
 
-  JournalPointer Begin(const EnsembleSpec& spec = SomeSpec()) {
-    auto journal = std::make_shared<RecordingJournal>();
-    scheduler_->Add(RunOf(1, spec, journal));
-    EXPECT_TRUE(local_->TakeTurn());  // opens the point
+  JournalPointer Add() { return stepped_->Add(1, SomeSpec()); }
+  JournalPointer Begin() {
+    JournalPointer journal = Add();
+    EXPECT_TRUE(stepped_->local_.TakeTurn());  // opens the point
     executor_->Look();
     return journal;
   }
@@ -51,13 +48,18 @@ class FolderExecutorTest : public testing::Test {
   }
 
   // A worker takes the lease. Its file in taken/, without the folder.
-  std::string Take(const std::string& lease, const std::string& worker = "w") {
-    EXPECT_OK(files_.Move("todo/" + lease, absl::StrCat("taken/", lease, ".", worker)));
-    return absl::StrCat(lease, ".", worker);
+  std::string Take(const std::string& lease) {
+    EXPECT_OK(files_.Move("todo/" + lease, "taken/" + lease + ".w"));
+    return lease + ".w";
   }
-
-  // The number of the lease's first chunk.
-  uint64_t FirstChunkOf(const std::string& path) const { return RecordIn(path).first_chunk(); }
+  std::string Take() { return Take(In("todo")[0]); }
+  // The same, and computes it.
+  std::string Finished() {
+    const std::string taken = Take();
+    Compute(taken);
+    End(taken);
+    return taken;
+  }
 
   storage::Lease RecordIn(const std::string& path) const {
     absl::string_view bytes = files_.files.at(path).bytes;
@@ -83,7 +85,7 @@ class FolderExecutorTest : public testing::Test {
   }
 
   // Real workers compute what is left.
-  void ComputeAll(RecordingJournal& journal, const EnsembleSpec& spec = SomeSpec()) {
+  void ComputeAll(RecordingJournal& journal) {
     WorkerHost host = {.now = [] { return std::chrono::steady_clock::time_point(); },
                        .sleep = [](auto) {},
                        .random_bits = [] { return 1; },
@@ -96,25 +98,20 @@ class FolderExecutorTest : public testing::Test {
     }
     ASSERT_TRUE(journal.outcome);
     EXPECT_OK(*journal.outcome);
-    const auto experiment = PointExperiment::Create(spec, 0);
+    const auto experiment = PointExperiment::Create(SomeSpec(), 0);
     EXPECT_TRUE(journal.finished.at(0) == FoldPoint(*experiment));
     EXPECT_EQ(journal.merged.at(0), experiment->plan().samples());
   }
 
   FakeFiles files_;
   absl::Status flush_, prepare_;
-  FactoryOpener opener_{
-      [](const EnsembleSpec& spec, size_t index) { return PointExperiment::Create(spec, index); }};
-  std::unique_ptr<Scheduler> scheduler_;
-  std::unique_ptr<SteppedExecutor> local_;
+  std::optional<SteppedScheduler> stepped_;
   std::unique_ptr<FolderExecutor> executor_;
 };
 
 TEST_F(FolderExecutorTest, AFileStaysUntilItsChunksAreOnDisk) {
   const auto journal = Begin();
-  const std::string taken = Take(In("todo")[0]);
-  Compute(taken);
-  End(taken);
+  const std::string taken = Finished();
   flush_ = absl::UnavailableError("the disk is slow");
   executor_->Look();
   EXPECT_THAT(In("done"), ElementsAre(taken + ".finished"));
@@ -135,13 +132,10 @@ TEST_F(FolderExecutorTest, LeasesThatAKilledServerWasWritingOrHasLaidAreRemoved)
 }
 
 TEST_F(FolderExecutorTest, AFileWhosePointIsNotOpenIsReadAgainAfterAPause) {
-  const EnsembleSpec spec = SomeSpec();
-  Begin(spec);
-  const std::string taken = Take(In("todo")[0]);
-  Compute(taken);
-  End(taken);
+  Begin();
+  Finished();
   Restart({.look = std::chrono::hours(1)});
-  scheduler_->Add(RunOf(1, spec, std::make_shared<RecordingJournal>()));
+  Add();
   int reads = 0;
   files_.Before("read", [&] {
     ++reads;
@@ -167,21 +161,19 @@ TEST_F(FolderExecutorTest, AFolderThatDoesNotAnswerIsAProblem) {
 // The file in taken/ is moved away, so that its worker stops. The later process looks before it
 // opens the point, and again while it opens it.
 TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReported) {
-  const EnsembleSpec spec = SomeSpec();
-  Begin(spec);
-  const std::string taken = Take(In("todo")[0]);
+  Begin();
+  const std::string taken = Take();
   Compute(taken);
   Restart();
-  auto journal = std::make_shared<RecordingJournal>();
-  scheduler_->Add(RunOf(1, spec, journal));
+  const auto journal = Add();
   executor_->Look();
   executor_->Look();
   EXPECT_THAT(In("taken"), IsEmpty());
   EXPECT_THAT(In("done"), ElementsAre(taken + ".lost"));
-  const std::optional<Lease> opening = local_->Begin();
+  const std::optional<Lease> opening = stepped_->local_.Begin();
   executor_->Look();
   EXPECT_THAT(In("done"), ElementsAre(taken + ".lost"));
-  local_->End(*opening, 0);
+  stepped_->local_.End(*opening, 0);
   executor_->Look();
   EXPECT_THAT(In("done"), IsEmpty());
   EXPECT_EQ(executor_->Status().chunks, 1);
@@ -191,9 +183,7 @@ TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReported) {
 // It stays while the disk fails, and while it cannot be removed.
 TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReportedAndChargedOnce) {
   Begin();
-  const std::string taken = Take(In("todo")[0]);
-  Compute(taken);
-  End(taken);
+  const std::string taken = Finished();
   Restart();
   flush_ = absl::UnavailableError("the disk is slow");
   const auto journal = Begin();
@@ -208,6 +198,7 @@ TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReportedAndChargedOnce) {
   EXPECT_THAT(In("done"), IsEmpty());
   EXPECT_EQ(executor_->Status().chunks, 1);
   EXPECT_EQ(journal->work, 1);
+  EXPECT_EQ(stepped_->scheduler_.processor_seconds(), 1);
   ComputeAll(*journal);
 }
 
@@ -217,7 +208,7 @@ TEST_F(FolderExecutorTest, ACrashOfTheEngineIsCounted) {
     ASSERT_FALSE(journal->outcome);
     std::string crashing;
     for (const std::string& name : In("todo")) {
-      if (FirstChunkOf("todo/" + name) == 0) crashing = name;
+      if (RecordIn("todo/" + name).first_chunk() == 0) crashing = name;
     }
     ASSERT_NE(crashing, "");
     End(Take(crashing), "crashed");
@@ -229,14 +220,14 @@ TEST_F(FolderExecutorTest, ACrashOfTheEngineIsCounted) {
 
 TEST_F(FolderExecutorTest, DamagedFilesAreRefusedAndComputedAgain) {
   const auto journal = Begin();
-  const std::string taken = Take(In("todo")[0]);
+  const std::string taken = Take();
   Compute(taken);
   files_.files["taken/" + taken].bytes.back() ^= 1;
   End(taken);
   storage::Lease of_another_server = RecordIn("todo/" + In("todo")[0]);
   of_another_server.set_server("another");
   files_.files["done/another-1.w.finished"].bytes = BytesOf(of_another_server);
-  const std::string beyond = Take(In("todo")[0]);
+  const std::string beyond = Take();
   Compute(beyond, true);
   End(beyond);
   files_.files["done/unknown.w.finished"].bytes = "a foreign file of some length, of no server";
@@ -252,25 +243,13 @@ TEST_F(FolderExecutorTest, DamagedFilesAreRefusedAndComputedAgain) {
 const ClusterOptions kNoTimeOut = {
     .timeout = milliseconds(0), .look = milliseconds(0), .least_waiting = 2};
 
-TEST_F(FolderExecutorTest, ASilentWorkerLosesItsLease) {
-  Restart(kNoTimeOut);
-  const auto journal = Begin();
-  const std::string taken = Take(In("todo")[0]);
-  executor_->Look();
-  EXPECT_THAT(In("done"), ElementsAre(taken + ".lost"));
-  executor_->Look();
-  EXPECT_THAT(In("done"), IsEmpty());
-  EXPECT_EQ(executor_->Status().lost_leases, 1);
-  ComputeAll(*journal);
-}
-
 TEST_F(FolderExecutorTest, WhileThereIsNoWorkerTheThreadsComputeAndOneLeaseWaits) {
   Restart(kNoTimeOut);
   Begin();
   EXPECT_THAT(In("todo"), SizeIs(2));
   executor_->Look();
   EXPECT_THAT(In("todo"), SizeIs(1));
-  Take(In("todo")[0]);
+  Take();
   executor_->Look();
   EXPECT_THAT(In("todo"), SizeIs(2));
 }
@@ -282,7 +261,7 @@ TEST_F(FolderExecutorTest, ThreadsCanTakeReturnedLeasesFirst) {
   executor_->Look();
   EXPECT_THAT(In("todo"), IsEmpty());
   EXPECT_EQ(executor_->Status().waiting_leases, 1);  // or Slurm's workers would be cancelled
-  local_->TakeAllTurns();
+  stepped_->local_.TakeAllTurns();
   ASSERT_TRUE(journal->outcome);
   EXPECT_OK(*journal->outcome);
 }
@@ -290,13 +269,13 @@ TEST_F(FolderExecutorTest, ThreadsCanTakeReturnedLeasesFirst) {
 TEST_F(FolderExecutorTest, AnEmptiedFolderGivesItsLeasesBack) {
   Restart(kNoTimeOut);
   const auto journal = Begin();
-  Take(In("todo")[0]);
+  Take();
   files_.Before("create", [] { return absl::UnavailableError("full"); });
   executor_->Look();
   files_.files.clear();
   executor_->Look();
   EXPECT_EQ(executor_->Status().waiting_leases + executor_->Status().taken_leases, 0);
-  local_->TakeAllTurns();
+  stepped_->local_.TakeAllTurns();
   ASSERT_TRUE(journal->outcome);
   EXPECT_OK(*journal->outcome);
 }
@@ -304,7 +283,7 @@ TEST_F(FolderExecutorTest, AnEmptiedFolderGivesItsLeasesBack) {
 TEST_F(FolderExecutorTest, AFolderThatCannotBeUsedGivesItsLeasesBack) {
   Restart(kNoTimeOut);
   Begin();
-  Take(In("todo")[0]);
+  Take();
   executor_->Look();
   prepare_ = absl::FailedPreconditionError("can be written by other users");
   files_.before = [](const char*, const std::string&) { return absl::UnavailableError("gone"); };
@@ -346,12 +325,6 @@ TEST_F(FolderExecutorTest, ALeaseGoesBackIfMemoryRunsOutWhileItIsLaid) {
   executor_->Look();
   EXPECT_EQ(executor_->Status().problem, "");
   ComputeAll(*journal);
-}
-
-// A lease has the states from which its trajectories continue.
-TEST_F(FolderExecutorTest, TrajectoriesContinueInLaterLeases) {
-  const EnsembleSpec spec = SpecOf(kGasConduction, Model::kMarkov, 600);
-  ComputeAll(*Begin(spec), spec);
 }
 
 // ---- many workers ----

@@ -75,10 +75,8 @@ TEST_F(SlurmWorkersTest, AsManyWorkersAreSubmittedAsThereAreLeases) {
 }
 
 TEST_F(SlurmWorkersTest, NoMoreWorkersThanTheFlagSays) {
-  SlurmWorkers workers =
-      New({.workers = 10, .max_array_size = 4, .query_interval = milliseconds(0)});
   work_ = {.waiting_leases = 100};
-  workers.Look();
+  New({.workers = 10, .max_array_size = 4}).Look();
   EXPECT_THAT(slurm_.submitted, ElementsAre(4, 4, 2));
 }
 
@@ -116,9 +114,8 @@ TEST_F(SlurmWorkersTest, TheQueueIsAskedOnceInAnInterval) {
 
 TEST_F(SlurmWorkersTest, ArraysShrinkToTheClustersLimit) {
   slurm_.largest_array = 3;
-  SlurmWorkers workers = New();
   work_ = {.waiting_leases = 5};
-  workers.Look();
+  New().Look();
   EXPECT_THAT(slurm_.submitted, ElementsAre(2, 2, 1));
 }
 

@@ -31,32 +31,19 @@ class CrashRecordTest : public testing::Test {
     while (!computing.empty()) computing.pop_back();  // the innermost first
   }
 
-  void DieInAnExamination(const RunName& run) {
-    CrashRecord record(folder_.path(), {});
-    const CrashRecord::Entry examining(record, run);
-    Die(SIGSEGV);
-  }
-
   void Die(int signal) {
     if (signal != kKilledFromOutside) CrashRecord::NoteDeath(signal);
-    std::filesystem::copy_file(folder_.File("computing"), at_death_.File("computing"),
-                               std::filesystem::copy_options::overwrite_existing);
-    died_ = true;
+    at_death_ = Contents(folder_.File("computing"));
   }
 
   // What the next process finds.
   std::unique_ptr<CrashRecord> Next(const OutOfMemoryKills& now = {}) {
-    if (died_) {
-      std::filesystem::copy_file(at_death_.File("computing"), folder_.File("computing"),
-                                 std::filesystem::copy_options::overwrite_existing);
-    }
-    died_ = false;
+    if (at_death_) WriteFile(folder_.File("computing"), *std::exchange(at_death_, std::nullopt));
     return std::make_unique<CrashRecord>(folder_.path(), now);
   }
 
   const TemporaryFolder folder_;
-  const TemporaryFolder at_death_;
-  bool died_ = false;
+  std::optional<std::string> at_death_;  // the record's file
 };
 
 TEST_F(CrashRecordTest, TwoDeathsWithDifferentRunsMakeASuspectOfTheCommonOne) {
@@ -78,7 +65,11 @@ TEST_F(CrashRecordTest, AKillFromOutsideKeepsThePointsOfTheLastDeath) {
   EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{7}));
   LiveAndDie({{kSecond, {5}}}, SIGSEGV);
   EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{7}));
-  DieInAnExamination(kFirst);
+  {
+    CrashRecord record(folder_.path(), {});
+    const CrashRecord::Entry examining(record, kFirst);
+    Die(SIGSEGV);
+  }
   EXPECT_EQ(Next()->Deaths(kFirst), 2);
   EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{7}));
   LiveAndDie({{kFirst, {8, 9}}}, SIGSEGV);
@@ -134,23 +125,21 @@ TEST_F(CrashRecordTest, AStoredChunkClearsTheRun) {
   EXPECT_EQ(record->Deaths(kSecond), 0);
 }
 
+// Counts of different boots are not compared.
 TEST_F(CrashRecordTest, AnOutOfMemoryKillCounts) {
   const OutOfMemoryKills before = {"boot group", 7}, after = {"boot group", 8};
+  LiveAndDie({{kFirst, {0}}}, kKilledFromOutside, before);
+  EXPECT_EQ(Next({"other boot group", 8})->Deaths(kFirst), 0);
+  LiveAndDie({{kFirst, {0}}}, kKilledFromOutside, {});
+  EXPECT_EQ(Next({})->Deaths(kFirst), 0);
   LiveAndDie({{kFirst, {0}}}, kKilledFromOutside, before);
   EXPECT_EQ(Next(after)->Deaths(kFirst), 1);
   EXPECT_EQ(Next(after)->Deaths(kFirst), 1);
 }
 
-TEST_F(CrashRecordTest, CountsOfDifferentBootsAreNotCompared) {
-  LiveAndDie({{kFirst, {0}}}, kKilledFromOutside, {"boot group", 7});
-  EXPECT_EQ(Next({"other boot group", 8})->Deaths(kFirst), 0);
-  LiveAndDie({{kFirst, {0}}}, kKilledFromOutside, {});
-  EXPECT_EQ(Next({})->Deaths(kFirst), 0);
-}
-
 TEST_F(CrashRecordTest, AnOutOfMemoryKillThatSystemdReportsCountsOnce) {
   LiveAndDie({{kFirst, {0}}}, kKilledFromOutside);
-  std::ofstream(folder_.File(kOutOfMemoryFile)).flush();
+  WriteFile(folder_.File(kOutOfMemoryFile), "");
   EXPECT_EQ(Next()->Deaths(kFirst), 1);
   EXPECT_FALSE(std::filesystem::exists(folder_.File(kOutOfMemoryFile)));
   EXPECT_EQ(Next()->Deaths(kFirst), 1);
@@ -163,7 +152,7 @@ TEST_F(CrashRecordTest, AnotherGenerationOfARunIsAnotherRun) {
 }
 
 TEST_F(CrashRecordTest, AFileOfAnotherFormatIsReplaced) {
-  std::ofstream(folder_.File("computing")) << std::string(100'000, 'x');
+  WriteFile(folder_.File("computing"), std::string(100'000, 'x'));
   EXPECT_EQ(Next()->Deaths(kFirst), 0);
   LiveAndDie({{kFirst, {0}}}, SIGSEGV);
   EXPECT_EQ(Next()->Deaths(kFirst), 1);
@@ -179,8 +168,7 @@ int Overflow(int depth) {
 
 class FatalSignalsDeathTest : public testing::Test {
  protected:
-  template <typename Fault>
-  void DieInATurn(Fault fault) {
+  void DieInATurn(const std::function<void()>& fault) {
     const rlimit no_core = {0, 0};
     setrlimit(RLIMIT_CORE, &no_core);
     NoteFatalSignals(CrashRecord::NoteDeath);
@@ -198,28 +186,22 @@ class FatalSignalsDeathTest : public testing::Test {
   const DeathTestFolder folder_;
 };
 
-TEST_F(FatalSignalsDeathTest, AStackOverflowCounts) {
-  EXPECT_DEATH(DieInATurn([] { Overflow(1); }), "");
-  EXPECT_EQ(Deaths(), 1);
-}
-
-TEST_F(FatalSignalsDeathTest, AnAbortCounts) {
-  EXPECT_DEATH(DieInATurn([] { abort(); }), "");
-  EXPECT_EQ(Deaths(), 1);
-}
-
-TEST_F(FatalSignalsDeathTest, AKillDoesNotCount) {
-  EXPECT_DEATH(DieInATurn([] { raise(SIGKILL); }), "");
-  EXPECT_EQ(Deaths(), 0);
-}
-
-TEST_F(FatalSignalsDeathTest, AFatalSignalOfAnotherProcessDoesNotCount) {
-  EXPECT_DEATH(DieInATurn([] {
-                 std::system(("kill -SEGV " + std::to_string(getpid())).c_str());
+TEST_F(FatalSignalsDeathTest, OnlyAFaultOfTheProcessItselfCounts) {
+  const struct {
+    std::function<void()> fault;
+    int deaths;
+  } rows[] = {{[] { Overflow(1); }, 1},
+              {[] { abort(); }, 1},
+              {[] { raise(SIGKILL); }, 0},
+              {[] {
+                 std::system(absl::StrCat("kill -SEGV ", getpid()).c_str());
                  pause();
-               }),
-               "");
-  EXPECT_EQ(Deaths(), 0);
+               },
+               0}};
+  for (const auto& [fault, deaths] : rows) {
+    EXPECT_DEATH(DieInATurn(fault), "");
+    EXPECT_EQ(Deaths(), deaths);
+  }
 }
 
 }  // namespace

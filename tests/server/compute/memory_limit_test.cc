@@ -27,12 +27,10 @@ class MemoryLimitTest : public SchedulerTest {
   }
   // A run whose key is the number of its bytes. By default its principal has no other.
   JournalPointer AddRun(int64_t bytes, const std::string& principal = "", int32_t priority = 0) {
-    auto journal = std::make_shared<RecordingJournal>();
-    RunRequest request = RunOf(bytes, SpecOfBytes(bytes), journal);
-    request.principal = principal.empty() ? std::to_string(bytes) : principal;
-    request.priority = priority;
-    scheduler_.Add(std::move(request));
-    return journal;
+    return Add(bytes, SpecOfBytes(bytes), [&](RunRequest& request, RecordingJournal&) {
+      request.principal = principal.empty() ? std::to_string(bytes) : principal;
+      request.priority = priority;
+    });
   }
 
   // The next turn that does not open a point. To open one takes a second, so that runs take turns.
@@ -134,18 +132,15 @@ TEST_F(MemoryLimitTest, APrincipalLeavesMemoryToTheOthers) {
 
 // Points of 520 MB, of which some 500 MB stay while they wait for executors elsewhere.
 TEST(MemoryLimit, PointsWaitElsewhereWithinTheLimit) {
-  SeedsAreBytes opener;
-  Scheduler scheduler(opener, 1, {.memory_limit = 4e9});
-  SteppedExecutor local(scheduler);
-  RemoteExecutor remote(scheduler, 1000);
+  SteppedScheduler stepped(std::make_unique<SeedsAreBytes>(), {.memory_limit = 4e9});
+  RemoteExecutor remote(stepped.scheduler_, 1000);
   EnsembleSpec spec = SixChunks(100);
   spec.seed = 520'000'000;
-  scheduler.Add(RunOf(1, spec, std::make_shared<RecordingJournal>()));
-  ASSERT_TRUE(local.TakeTurn());
+  stepped.Add(1, spec);
+  ASSERT_TRUE(stepped.local_.TakeTurn());
   EXPECT_EQ(remote.TakeAll().size(), 1u);
-  ASSERT_TRUE(local.TakeTurn());
+  ASSERT_TRUE(stepped.local_.TakeTurn());
   EXPECT_EQ(remote.TakeAll().size(), 7u);
-  scheduler.Shutdown();
 }
 
 }  // namespace

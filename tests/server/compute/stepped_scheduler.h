@@ -5,7 +5,7 @@
 #include "server/compute/guarded.h"
 #include "server/compute/run_journal.h"
 #include "tests/server/preamble.h"
-#include "tests/server/worker/computed_chunks.h"
+#include "tests/server/worker/sample_leases.h"
 
 namespace ballpiston::server {
 
@@ -114,7 +114,6 @@ inline RunRequest RunOf(int64_t key, const EnsembleSpec& spec, const JournalPoin
   request.key = key;
   request.spec = spec;
   request.finished.assign(PointCount(spec), false);
-  request.has_checkpoints = !journal->stored.empty();
   request.journal = journal;
   return request;
 }
@@ -211,8 +210,8 @@ class RemoteExecutor {
     while (std::optional<Lease> lease = Take()) leases.push_back(*std::move(lease));
     return leases;
   }
-  absl::Status Report(const Lease& lease, std::vector<ChunkResult> chunks, double seconds = 0) {
-    return scheduler_.Report(lease, {.chunks = std::move(chunks), .seconds = seconds});
+  absl::Status Report(const Lease& lease, std::vector<ChunkResult> chunks) {
+    return scheduler_.Report(lease, {.chunks = std::move(chunks)});
   }
   absl::Status ReportAll(const Lease& lease) { return Report(lease, ComputedChunks(lease)); }
   void Return(const Lease& lease, bool tried = true) { scheduler_.Return(lease, tried); }
@@ -224,19 +223,22 @@ class RemoteExecutor {
 
 // ---- the scheduler ----
 
-class SchedulerTest : public testing::Test {
- protected:
-  explicit SchedulerTest(
-      std::unique_ptr<PointOpener> opener = std::make_unique<FactoryOpener>(FakeExperiments()),
-      const SchedulerOptions& options = {})
-      : opener_(std::move(opener)), scheduler_(*opener_, 1, options), local_(scheduler_) {}
-  ~SchedulerTest() override { scheduler_.Shutdown(); }
+// A scheduler and its local executor.
+struct SteppedScheduler {
+  explicit SteppedScheduler(std::unique_ptr<PointOpener> points,
+                            const SchedulerOptions& options = {})
+      : opener_(std::move(points)), scheduler_(*opener_, 1, options), local_(scheduler_) {}
+  explicit SteppedScheduler(ExperimentFactory factory, const SchedulerOptions& options = {})
+      : SteppedScheduler(std::make_unique<FactoryOpener>(std::move(factory)), options) {}
+  ~SteppedScheduler() { scheduler_.Shutdown(); }
 
-  JournalPointer Add(int64_t key, const EnsembleSpec& spec,
-                     std::optional<Suspicion> suspicion = {}) {
+  // Adds a run, after a change of its request or of its journal.
+  using Change = std::function<void(RunRequest& request, RecordingJournal& journal)>;
+  JournalPointer Add(int64_t key, const EnsembleSpec& spec, const Change& change = nullptr) {
     auto journal = std::make_shared<RecordingJournal>();
     RunRequest request = RunOf(key, spec, journal);
-    request.suspicion = std::move(suspicion);
+    if (change) change(request, *journal);
+    request.has_checkpoints = !journal->stored.empty();
     scheduler_.Add(std::move(request));
     return journal;
   }
@@ -256,6 +258,14 @@ class SchedulerTest : public testing::Test {
   const std::unique_ptr<PointOpener> opener_;
   Scheduler scheduler_;
   SteppedExecutor local_;
+};
+
+class SchedulerTest : public testing::Test, public SteppedScheduler {
+ protected:
+  explicit SchedulerTest(
+      std::unique_ptr<PointOpener> opener = std::make_unique<FactoryOpener>(FakeExperiments()),
+      const SchedulerOptions& options = {})
+      : SteppedScheduler(std::move(opener), options) {}
 };
 
 }  // namespace ballpiston::server

@@ -7,11 +7,13 @@ namespace {
 
 class SuspectsTest : public SchedulerTest {
  protected:
-  Suspicion Suspected(int64_t key, std::set<size_t> points = {}) {
-    return {.points = std::move(points), .end = [this, key](bool is_refuted) {
-              if (disk_works_) (is_refuted ? cleared_ : undecided_).push_back(key);
-              return disk_works_;
-            }};
+  Change Suspected(int64_t key, std::set<size_t> points = {}) {
+    return [=, this](RunRequest& request, RecordingJournal&) {
+      request.suspicion = {.points = points, .end = [this, key](bool is_refuted) {
+                             if (disk_works_) (is_refuted ? cleared_ : undecided_).push_back(key);
+                             return disk_works_;
+                           }};
+    };
   }
 
   bool disk_works_ = true;
@@ -89,10 +91,10 @@ TEST_F(SuspectsTest, ACancelledSuspectLetsTheOthersGoOn) {
 
 TEST_F(SuspectsTest, PointsThatAreFinishedNeedNoChunk) {
   Add(1, SixChunks(2));
-  RunRequest request = RunOf(2, SixChunks(2), std::make_shared<RecordingJournal>());
-  request.finished[0] = true;
-  request.suspicion = Suspected(2, {0, 2, 7});
-  scheduler_.Add(std::move(request));
+  Add(2, SixChunks(2), [this](RunRequest& request, RecordingJournal& journal) {
+    Suspected(2, {0, 2, 7})(request, journal);
+    request.finished[0] = true;
+  });
   EXPECT_THAT(Turns(2, 32), ElementsAre(2, 2));
   EXPECT_THAT(cleared_, ElementsAre(2));
 }

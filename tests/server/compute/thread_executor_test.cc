@@ -12,63 +12,56 @@
 namespace ballpiston::server {
 namespace {
 
-// What the next process finds if the kernel kills this one during a block, and during a wait for
-// the disk.
-TEST(ThreadExecutor, ARunIsInTheRecordOnlyWhileItIsComputed) {
-  const OutOfMemoryKills before = {"group", 7}, after = {"group", 8};
-  const TemporaryFolder folder, in_a_block, in_a_wait;
-  const auto keep = [&](const TemporaryFolder& copy) {
-    std::filesystem::copy_file(folder.File("computing"), copy.File("computing"),
-                               std::filesystem::copy_options::overwrite_existing);
-  };
-  FactoryOpener opener(
-      FakeExperiments([&](size_t, uint64_t, std::stop_token) { keep(in_a_block); }));
-  Scheduler scheduler(opener, 1);
-  ThreadExecutor threads(scheduler, 1, std::numeric_limits<double>::infinity(),
-                         std::make_shared<CrashRecord>(folder.path(), before));
-  const auto journal = std::make_shared<RecordingJournal>();
-  journal->await_room = [&] {
-    keep(in_a_wait);
-    return 0;
-  };
-  scheduler.Add(RunOf(1, FakeSpec(1, 3), journal));
-  threads.Start();
-  EXPECT_OK(journal->AwaitEnd());
-  scheduler.Shutdown();
-  EXPECT_EQ(CrashRecord(in_a_block.path(), after).Deaths({1, 0}), 1);
-  EXPECT_EQ(CrashRecord(in_a_wait.path(), after).Deaths({1, 0}), 0);
-}
-
-std::unique_ptr<const PointExperiment> OpenReal(const EnsembleSpec& spec, size_t index) {
-  return PointExperiment::Create(spec, index);
-}
-
-BlockResult ResultOf(const EnsembleSpec& spec, OrbitDevice* device, int workers = 2) {
-  FactoryOpener opener(OpenReal);
+// The journal of a run that threads have computed.
+JournalPointer Ran(const ExperimentFactory& factory, const EnsembleSpec& spec, int workers = 2,
+                   OrbitDevice* device = nullptr,
+                   const std::shared_ptr<CrashRecord>& record = std::make_shared<CrashRecord>(),
+                   JournalPointer journal = std::make_shared<RecordingJournal>()) {
+  FactoryOpener opener(factory);
   Scheduler scheduler(opener, workers);
-  ThreadExecutor threads(scheduler, workers, kInfinity, std::make_shared<CrashRecord>(), device);
-  const auto journal = std::make_shared<RecordingJournal>();
+  ThreadExecutor threads(scheduler, workers, kInfinity, record, device);
   scheduler.Add(RunOf(1, spec, journal));
   threads.Start();
   EXPECT_OK(journal->AwaitEnd());
   scheduler.Shutdown();
-  return journal->finished.at(0);
+  return journal;
+}
+
+BlockResult ResultOf(const EnsembleSpec& spec, OrbitDevice* device, int workers = 2) {
+  return Ran([](const EnsembleSpec& of, size_t i) { return PointExperiment::Create(of, i); }, spec,
+             workers, device)
+      ->finished.at(0);
+}
+
+// What the next process finds if the kernel kills this one during a block, and during a wait for
+// the disk.
+TEST(ThreadExecutor, ARunIsInTheRecordOnlyWhileItIsComputed) {
+  const OutOfMemoryKills before = {"group", 7}, after = {"group", 8};
+  const TemporaryFolder folder;
+  std::string in_a_block, in_a_wait;
+  const auto record = [&] { return Contents(folder.File("computing")); };
+  const auto journal = std::make_shared<RecordingJournal>();
+  journal->await_room = [&] {
+    in_a_wait = record();
+    return 0;
+  };
+  Ran(FakeExperiments([&](size_t, uint64_t, std::stop_token) { in_a_block = record(); }),
+      FakeSpec(1, 3), 1, nullptr, std::make_shared<CrashRecord>(folder.path(), before), journal);
+  for (const auto& [left, deaths] : {std::pair(in_a_block, 1), {in_a_wait, 0}}) {
+    WriteFile(folder.File("computing"), left);
+    EXPECT_EQ(CrashRecord(folder.path(), after).Deaths({1, 0}), deaths);
+  }
 }
 
 // While one thread computes a slow block, the others must find blocks for all their lanes.
 TEST(ThreadExecutor, TheWindowGrowsWithTheThreads) {
   constexpr int kBeyondTheWindow = ChunkFold::kWindow + 100;
   std::latch begun(kBeyondTheWindow);
-  FactoryOpener opener(FakeExperiments([&](size_t, uint64_t block, std::stop_token) {
-    if (block < kBeyondTheWindow) begun.count_down();
-    if (block == 0) begun.wait();
-  }));
-  Scheduler scheduler(opener, 2);
-  ThreadExecutor threads(scheduler, 2);
-  const auto journal = std::make_shared<RecordingJournal>();
-  scheduler.Add(RunOf(1, FakeSpec(1, 3000), journal));
-  threads.Start();
-  EXPECT_OK(journal->AwaitEnd());
+  Ran(FakeExperiments([&](size_t, uint64_t block, std::stop_token) {
+        if (block < kBeyondTheWindow) begun.count_down();
+        if (block == 0) begun.wait();
+      }),
+      FakeSpec(1, 3000));
 }
 
 // Otherwise blocks of long orbits would be dropped more often than others. False alarms: 6e-5.

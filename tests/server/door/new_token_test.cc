@@ -2,6 +2,7 @@
 
 #include "server/door/access_list.h"
 #include "tests/support/preamble.h"
+#include "tests/support/scoped_limit.h"
 
 namespace ballpiston::server {
 namespace {
@@ -16,25 +17,25 @@ class NewToken : public ::testing::Test {
     EXPECT_OK(token);
     return *token;
   }
+  std::string Error(const std::string& request) const {
+    return std::string(
+        IssueToken(file_, *ParseTokenRequest(request), kIssueTime).status().message());
+  }
 
   TemporaryFolder folder_;
   const NamedFile file_{"access-file", folder_.File("list")};
 };
 
 TEST_F(NewToken, AuthenticatesItsPrincipalAndIsNotInTheFile) {
+  const mode_t before = umask(0);
   const std::string token = Issue("alice:submit");
+  umask(before);
+  EXPECT_EQ(ModeOf(file_.path), 0600u);
   ASSERT_OK_AND_ASSIGN(const auto list, AccessList::Read(file_));
   EXPECT_EQ(list.OfToken(token, kIssueTime + absl::Hours(24 * 36'500))->name, "alice");
   EXPECT_EQ(list.OfToken(token, kIssueTime)->role, Role::kSubmit);
   EXPECT_THAT(Contents(file_.path), Not(HasSubstr(token)));
   EXPECT_THAT(Contents(file_.path), Not(HasSubstr(token.substr(3))));  // without its prefix
-}
-
-TEST_F(NewToken, TheFileIsItsOwnersOnly) {
-  const mode_t before = umask(0);
-  Issue("alice:read");
-  umask(before);
-  EXPECT_EQ(ModeOf(file_.path), 0600u);
 }
 
 TEST_F(NewToken, ExpiresAfterItsDays) {
@@ -45,50 +46,30 @@ TEST_F(NewToken, ExpiresAfterItsDays) {
 }
 
 TEST_F(NewToken, AnOpenOrMalformedFileStaysUnchanged) {
-  WriteFile(file_.path, "");
-  chmod(file_.path.c_str(), 0644);
-  const TokenRequest request = *ParseTokenRequest("alice:read");
-  EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),
-              HasSubstr("open to other users"));
-  chmod(file_.path.c_str(), 0600);
-  WriteFile(file_.path, "nonsense\n");
-  EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),
-              HasSubstr("line 1"));
-  EXPECT_EQ(Contents(file_.path), "nonsense\n");
-  WriteFile(file_.path, std::string(kMaxSecurityFile - 50, '#'));  // a comment
-  EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),
-              HasSubstr("permitted: up to 1048576; remove old"));
-  EXPECT_EQ(Contents(file_.path).size(), kMaxSecurityFile - 50);
+  const struct {
+    std::string text;
+    mode_t mode;
+    const char* error;
+  } rows[] = {
+      {"", 0644, "open to other users"},
+      {"nonsense\n", 0600, "line 1"},
+      // A comment.
+      {std::string(kMaxSecurityFile - 50, '#'), 0600, "permitted: up to 1048576; remove old"}};
+  for (const auto& [text, mode, error] : rows) {
+    WriteFile(file_.path, text);
+    chmod(file_.path.c_str(), mode);
+    EXPECT_THAT(Error("alice:read"), HasSubstr(error));
+    EXPECT_EQ(Contents(file_.path), text);
+  }
 }
-
-// No file may grow beyond `bytes`, as on a disk that is full.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit = {bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    signal(SIGXFSZ, handler_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  void (*const handler_)(int) = signal(SIGXFSZ, SIG_IGN);
-  rlimit before_{};
-};
 
 TEST_F(NewToken, OnAFullDiskTheFileStaysUnchanged) {
   while (!std::filesystem::exists(file_.path) || Contents(file_.path).size() < 900)
     Issue("alice:submit");
   const std::string before = Contents(file_.path);
   {
-    const FullDisk disk(before.size() + 20);
-    const auto token = IssueToken(file_, *ParseTokenRequest("bob:submit"), kIssueTime);
-    EXPECT_THAT(std::string(token.status().message()), HasSubstr("No space left"));
+    const ScopedLimit full_disk(RLIMIT_FSIZE, before.size() + 20);
+    EXPECT_THAT(Error("bob:submit"), HasSubstr("No space left"));
   }
   EXPECT_EQ(Contents(file_.path), before);
   Issue("bob:submit");

@@ -1,7 +1,5 @@
 // Every method of every service, called with every kind of credential: a table.
 #include "ballpiston/v1/server.pb.h"
-#include "google/protobuf/descriptor.h"
-#include "google/protobuf/dynamic_message.h"
 #include "tests/server/preamble.h"
 #include "tests/server/secure_server.h"
 
@@ -9,20 +7,18 @@ namespace ballpiston::server {
 namespace {
 
 using google::protobuf::DescriptorPool;
+using google::protobuf::MessageFactory;
 using google::protobuf::MethodDescriptor;
 
 // The least role of each method. A new method must be added here, or the test fails.
-const std::map<std::string, Role>& LeastRoles() {
-  static const auto* const roles = new std::map<std::string, Role>{
-      {"CreateEnsembleJob", Role::kSubmit}, {"GetEnsembleJob", Role::kRead},
-      {"ListEnsembleJobs", Role::kRead},    {"CancelEnsembleJob", Role::kSubmit},
-      {"DeleteEnsembleJob", Role::kSubmit}, {"WatchEnsembleJob", Role::kRead},
-      {"PlanEnsembleJob", Role::kRead},     {"ListResults", Role::kRead},
-      {"UpdateEnsembleJob", Role::kSubmit}, {"GetResult", Role::kRead},
-      {"EvaluatePairs", Role::kRead},       {"GetServerStatus", Role::kRead},
-      {"TraceOrbit", Role::kSubmit},        {"SampleCollisions", Role::kSubmit}};
-  return *roles;
-}
+const std::map<std::string, Role> kLeastRoles = {
+    {"CreateEnsembleJob", Role::kSubmit}, {"GetEnsembleJob", Role::kRead},
+    {"ListEnsembleJobs", Role::kRead},    {"CancelEnsembleJob", Role::kSubmit},
+    {"DeleteEnsembleJob", Role::kSubmit}, {"WatchEnsembleJob", Role::kRead},
+    {"PlanEnsembleJob", Role::kRead},     {"ListResults", Role::kRead},
+    {"UpdateEnsembleJob", Role::kSubmit}, {"GetResult", Role::kRead},
+    {"EvaluatePairs", Role::kRead},       {"GetServerStatus", Role::kRead},
+    {"TraceOrbit", Role::kSubmit},        {"SampleCollisions", Role::kSubmit}};
 
 // The methods of all proto files of the API in the source tree.
 std::vector<const MethodDescriptor*> AllMethods() {
@@ -51,25 +47,12 @@ const google::protobuf::FieldDescriptor* JobField(const MethodDescriptor& method
 
 // A request that has only the name of the job or of its first result, if the method needs one.
 std::string RequestFor(const MethodDescriptor& method, const std::string& job) {
-  google::protobuf::DynamicMessageFactory factory;
   const std::unique_ptr<google::protobuf::Message> request(
-      factory.GetPrototype(method.input_type())->New());
+      MessageFactory::generated_factory()->GetPrototype(method.input_type())->New());
   const auto* field = JobField(method);
   const std::string name = method.name() == "GetResult" ? job + "/results/0" : job;
   if (field != nullptr) request->GetReflection()->SetString(request.get(), field, name);
   return request->SerializeAsString();
-}
-
-std::string PathOf(const MethodDescriptor& method) {
-  return "/" + method.service()->full_name() + "/" + method.name();
-}
-
-std::string TextOf(const grpc::Status& status) {
-  if (status.ok()) return "OK";
-  const std::string reason = ReasonOf(status);
-  return reason.empty()
-             ? "code " + std::to_string(status.error_code()) + " " + status.error_message()
-             : reason;
 }
 
 class AccessTable : public ::testing::Test {
@@ -78,7 +61,12 @@ class AccessTable : public ::testing::Test {
 
   // `shown` holds the authorization headers.
   grpc::Status Ask(const MethodDescriptor& method, const std::vector<std::string>& shown) {
-    return CallByName(server_.channel(), PathOf(method), RequestFor(method, JobOfAlice()), shown);
+    return Ask(method, JobOfAlice(), shown);
+  }
+  grpc::Status Ask(const MethodDescriptor& method, const std::string& job,
+                   const std::vector<std::string>& shown) {
+    return CallByName(server_.channel(), PathOf(*method.input_type()), RequestFor(method, job),
+                      shown);
   }
 
   LaboratoryFiles files_;
@@ -90,8 +78,8 @@ TEST_F(AccessTable, EveryCredentialHasExactlyTheRightsOfItsRole) {
   const auto methods = AllMethods();
   EXPECT_GE(methods.size(), 10u);
   for (const MethodDescriptor* method : methods) {
-    ASSERT_EQ(LeastRoles().count(method->name()), 1u) << method->name() << " has no role";
-    const Role least = LeastRoles().at(method->name());
+    ASSERT_EQ(kLeastRoles.count(method->name()), 1u) << method->name() << " has no role";
+    const Role least = kLeastRoles.at(method->name());
     const bool of_a_job = JobField(*method) != nullptr;
     SCOPED_TRACE(method->name());
     const auto outcome = [&](const std::string& token) {
@@ -100,7 +88,7 @@ TEST_F(AccessTable, EveryCredentialHasExactlyTheRightsOfItsRole) {
         EXPECT_THAT(status.error_message(), Not(HasSubstr(token)));
         EXPECT_THAT(status.error_details(), Not(HasSubstr(token)));
       }
-      return TextOf(status);
+      return status.ok() ? "OK" : ReasonOf(status);
     };
     const std::string right = outcome(kAlice);
     EXPECT_EQ(outcome(""), "CREDENTIALS_MISSING");
@@ -110,11 +98,10 @@ TEST_F(AccessTable, EveryCredentialHasExactlyTheRightsOfItsRole) {
     EXPECT_EQ(outcome(kAliceReads), least == Role::kRead ? right : "ROLE_TOO_LOW");
     EXPECT_EQ(outcome(kOps), right);
     // Other errors (an invalid request, an ended job) come after authorisation.
-    for (const char* closed : {"ROLE_TOO_LOW", "JOB_NOT_FOUND", "CREDENTIALS_MISSING",
+    for (const char* closed : {"", "ROLE_TOO_LOW", "JOB_NOT_FOUND", "CREDENTIALS_MISSING",
                                "CREDENTIALS_INVALID", "CREDENTIALS_EXPIRED"}) {
       EXPECT_NE(right, closed);
     }
-    EXPECT_EQ(right.find("code "), std::string::npos) << right;
   }
 }
 
@@ -122,9 +109,7 @@ TEST_F(AccessTable, UnknownJobsAreNotFoundAndMalformedNamesInvalid) {
   for (const MethodDescriptor* method : AllMethods()) {
     if (JobField(*method) == nullptr) continue;
     SCOPED_TRACE(method->name());
-    const auto call = [&](const std::string& job) {
-      return CallByName(server_.channel(), PathOf(*method), RequestFor(*method, job), Bearer(kOps));
-    };
+    const auto call = [&](const std::string& job) { return Ask(*method, job, Bearer(kOps)); };
     EXPECT_THAT(call("ensembleJobs/unknown"),
                 IsError(grpc::StatusCode::NOT_FOUND, "JOB_NOT_FOUND"));
     EXPECT_THAT(call("ensembleJobs/unknown").error_message(), HasSubstr("ensembleJobs/unknown"));

@@ -10,14 +10,11 @@ class AnalyticServiceTest : public testing::Test {
     request_.add_delta(0.2);
   }
 
-  grpc::Status Evaluate() {
-    grpc::ClientContext context;
-    return server_.analytic().EvaluatePairs(&context, request_, &response_);
+  v1::EvaluatePairsResponse Answer() const {
+    return RunningServer().Answered<v1::EvaluatePairsResponse>(request_);
   }
 
-  RunningServer server_;
   v1::EvaluatePairsRequest request_;
-  v1::EvaluatePairsResponse response_;
 };
 
 // No field was forgotten. A number that is 0 has no bytes.
@@ -30,19 +27,20 @@ void ExpectNoZero(const google::protobuf::Message& message) {
 TEST_F(AnalyticServiceTest, EveryPairHasItsPointRhoOutermost) {
   request_.add_rho(0.55);
   request_.add_delta(0.1);
-  ASSERT_OK(Evaluate());
-  ASSERT_EQ(response_.points_size(), 4);
-  EXPECT_EQ(response_.points(1).rho(), kPaperRho);
-  EXPECT_EQ(response_.points(1).delta(), 0.1);
-  EXPECT_EQ(response_.points(2).rho(), 0.55);
+  const auto points = Answer().points();
+  ASSERT_EQ(points.size(), 4);
+  EXPECT_EQ(points[1].rho(), kPaperRho);
+  EXPECT_EQ(points[1].delta(), 0.1);
+  EXPECT_EQ(points[2].rho(), 0.55);
 }
 
+// Temperatures follow the betas.
 TEST_F(AnalyticServiceTest, ValuesAreThoseOfTheClosedForms) {
   for (const double epsilon : {0.0, 0.25, 0.5}) request_.add_epsilon(epsilon);
   request_.add_outgoing_epsilon(0.125);
-  request_.add_beta(2);
-  ASSERT_OK(Evaluate());
-  const v1::PairAnalytics& point = response_.points(0);
+  request_.add_beta(4);
+  request_.add_temperature(2);
+  const v1::PairAnalytics point = Answer().points(0);
   EXPECT_NEAR(point.gas_delta_bound(), 0.2, 1e-14);
   EXPECT_NEAR(point.tau_ball_piston(), 4 * point.volume() / point.area_ball_piston(),
               1e-13 * point.tau_ball_piston());
@@ -55,20 +53,12 @@ TEST_F(AnalyticServiceTest, ValuesAreThoseOfTheClosedForms) {
   EXPECT_NEAR(point.energies(1).mean_free_time_conditional(), point.tau_ball_piston(), 1e-12);
   ASSERT_EQ(point.energies(1).kernel_size(), 1);
   EXPECT_NEAR(point.energies(1).kernel(0), 0.5 / (2 * M_PI * std::sqrt(0.125 * 0.125)), 1e-14);
-  ASSERT_EQ(point.canonical_size(), 1);
-  ExpectNoZero(point.canonical(0));
-  EXPECT_NEAR(point.canonical(0).mean_f(), 1 / std::sqrt(4 * M_PI), 1e-15);
-  EXPECT_NEAR(point.canonical(0).mean_h(), 0.5 * point.canonical(0).mean_f(), 1e-15);
-}
-
-TEST_F(AnalyticServiceTest, TemperaturesFollowTheBetasWithTheirRates) {
-  request_.add_beta(4);
-  request_.add_temperature(2);
-  ASSERT_OK(Evaluate());
-  const v1::PairAnalytics& point = response_.points(0);
   ASSERT_EQ(point.canonical_size(), 2);
   EXPECT_EQ(point.canonical(0).temperature(), 0.25);
+  EXPECT_NEAR(point.canonical(0).mean_f(), 1 / std::sqrt(8 * M_PI), 1e-15);
+  EXPECT_NEAR(point.canonical(0).mean_h(), 0.125 * point.canonical(0).mean_f(), 1e-15);  // 2 T^2
   const v1::CanonicalAnalytics& canonical = point.canonical(1);
+  ExpectNoZero(canonical);
   EXPECT_EQ(canonical.beta(), 0.5);
   EXPECT_EQ(canonical.temperature(), 2);
   EXPECT_NEAR(canonical.mean_f(), 1 / std::sqrt(M_PI), 1e-15);
@@ -85,8 +75,8 @@ TEST_F(AnalyticServiceTest, TheWholeRangeOfTemperaturesIsAnswered) {
     request_.add_temperature(temperature);
     request_.add_beta(temperature);
   }
-  ASSERT_OK(Evaluate());
-  for (const v1::CanonicalAnalytics& row : response_.points(0).canonical()) {
+  const v1::PairAnalytics point = Answer().points(0);
+  for (const v1::CanonicalAnalytics& row : point.canonical()) {
     for (const double value : {row.mean_f(), row.mean_h(), row.exchange_rate(),
                                row.static_conductivity(), row.rare_limit_exchange_rate()}) {
       EXPECT_TRUE(std::isnormal(value)) << row.DebugString();

@@ -1,8 +1,6 @@
 // Bad requests of all methods: the error names the fields and says what is permitted. All ranges of
 // a specification are in tests/core/ensemble/ensemble_spec_test.cc, its texts in
 // convert/spec_test.cc.
-#include "google/protobuf/descriptor.h"
-#include "google/protobuf/dynamic_message.h"
 #include "server/rpc/request_check.h"
 #include "tests/server/preamble.h"
 
@@ -14,7 +12,7 @@ using Fields = std::vector<std::string>;
 const char kAndMore[] = "...";
 
 struct BadRequest {
-  std::string method;
+  std::string method;        // of version 1 of the API
   std::string request;       // in text format; a later value replaces an earlier one or is added
   Fields fields;             // that the error names; kAndMore: and others
   std::string message = {};  // a part of it
@@ -33,17 +31,13 @@ std::string PageToken(const Request& list, int64_t start) {
 }
 
 std::vector<BadRequest> BadRequests() {
-  const std::string kJobs = "ballpiston.v1.EnsembleService.";
-  const std::string create = kJobs + "CreateEnsembleJob", plan = kJobs + "PlanEnsembleJob";
-  const std::string cancel = kJobs + "CancelEnsembleJob", update = kJobs + "UpdateEnsembleJob";
-  const std::string list = kJobs + "ListEnsembleJobs", results = kJobs + "ListResults";
+  const std::string create = "CreateEnsembleJob", update = "UpdateEnsembleJob";
+  const std::string list = "ListEnsembleJobs", results = "ListResults", pairs = "EvaluatePairs";
+  const std::string trace = "TraceOrbit", sample = "SampleCollisions";
   v1::ListEnsembleJobsRequest other_jobs;
   other_jobs.add_states(v1::EnsembleJob::RUNNING);
   v1::ListResultsRequest other_results;
   other_results.set_parent("ensembleJobs/b");
-  const std::string pairs = "ballpiston.v1.AnalyticService.EvaluatePairs";
-  const std::string trace = "ballpiston.v1.TraceService.TraceOrbit";
-  const std::string sample = "ballpiston.v1.TraceService.SampleCollisions";
   const std::string hit =
       "spec { experiment: FIRST_HIT target { samples: 64 } "
       "grid { rho: 0.53 delta: [0.3, 0.25, 0.2] epsilon: [0.1, 0.4] exponent: 1 } } ";
@@ -71,10 +65,10 @@ std::vector<BadRequest> BadRequests() {
       {create,
        with("grid { rho: 0.4 } target { samples: 0 }") + "request_id: 'x'",
        {"request_id", "spec.grid.rho[1]", "spec.target.samples"}},
-      {plan,
+      {"PlanEnsembleJob",
        with("grid { rho: 0.4 epsilon: 0.7 } target { tolerance: 0 }"),
        {"spec.grid.rho[1]", "spec.grid.epsilon[2]", "spec.target.tolerance"}},
-      {cancel, "name: 'ensembleJobs/a' request_id: 'x'", {"request_id"}},
+      {"CancelEnsembleJob", "name: 'ensembleJobs/a' request_id: 'x'", {"request_id"}},
       {update, job + "job { priority: 101 } update_mask { paths: 'priority' }", {"job.priority"}},
       {update, job, {"update_mask"}, mask},
       {update, job + "update_mask { paths: '*' }", {"update_mask"}, mask},
@@ -163,14 +157,14 @@ std::vector<BadRequest> BadRequests() {
 }
 
 grpc::Status Send(const RunningServer& server, const BadRequest& bad) {
-  const auto* method =
-      google::protobuf::DescriptorPool::generated_pool()->FindMethodByName(bad.method);
-  google::protobuf::DynamicMessageFactory factory;
-  const std::unique_ptr<google::protobuf::Message> request(
-      factory.GetPrototype(method->input_type())->New());
-  EXPECT_TRUE(google::protobuf::TextFormat::MergeFromString(bad.request, request.get()));
-  return CallByName(server.channel(), "/" + method->service()->full_name() + "/" + method->name(),
-                    request->SerializeAsString());
+  using namespace google::protobuf;
+  const std::unique_ptr<Message> request(
+      MessageFactory::generated_factory()
+          ->GetPrototype(DescriptorPool::generated_pool()->FindMessageTypeByName(
+              "ballpiston.v1." + bad.method + "Request"))
+          ->New());
+  EXPECT_TRUE(TextFormat::MergeFromString(bad.request, request.get()));
+  return server.Call(*request);
 }
 
 TEST(BadRequests, EveryBadFieldIsNamed) {
@@ -196,7 +190,7 @@ TEST(BadRequests, AFieldOfANewerClientIsRefused) {
   RunningServer server;
   v1::CreateEnsembleJobRequest request = CreateRequest(Equilibrium(1, 1));
   request.GetReflection()->MutableUnknownFields(&request)->AddVarint(100, 1);
-  const grpc::Status status = server.Create(request);
+  const grpc::Status status = server.Call(request);
   EXPECT_EQ(ReasonOf(status), "INVALID_REQUEST");
   EXPECT_THAT(DetailsOf(status).fields, testing::ElementsAre("request"));
 }
@@ -205,11 +199,10 @@ TEST(BadRequests, AFieldOfANewerClientIsRefused) {
 TEST(BadRequests, CompressedOnesAreUnimplemented) {
   RunningServer server;
   for (const auto algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP}) {
-    grpc::ClientContext context;
-    context.set_compression_algorithm(algorithm);
-    v1::EvaluatePairsResponse answer;
-    EXPECT_THAT(server.analytic().EvaluatePairs(&context, {}, &answer),
-                StatusIs(grpc::StatusCode::UNIMPLEMENTED));
+    grpc::ChannelArguments arguments;
+    arguments.SetCompressionAlgorithm(algorithm);
+    const TestClient client(OwnChannel(server.address(), nullptr, arguments));
+    EXPECT_THAT(client.Call(v1::EvaluatePairsRequest()), StatusIs(grpc::StatusCode::UNIMPLEMENTED));
   }
 }
 

@@ -3,29 +3,6 @@
 namespace ballpiston::server {
 namespace {
 
-// ---- Create ----
-
-// gRPC's own retries obey the metadata.
-TEST(EnsembleService, ALimitThatWaitingCuresTellsHowLong) {
-  Gate gate;
-  RunningServer server({.factory = GatedExperiments(gate),
-                        .limits = {.max_active_jobs_per_principal = 1, .max_points_per_job = 5}});
-  server.Submit(Equilibrium(1, 2));
-  const auto pushback = [&](int points) {
-    grpc::ClientContext context;
-    EnsembleJob job;
-    const v1::CreateEnsembleJobRequest request = CreateRequest(Equilibrium(points, 2, 7));
-    EXPECT_THAT(server.ensemble().CreateEnsembleJob(&context, request, &job),
-                StatusIs(grpc::StatusCode::RESOURCE_EXHAUSTED));
-    const auto& trailing = context.GetServerTrailingMetadata();
-    const auto found = trailing.find("grpc-retry-pushback-ms");
-    if (found == trailing.end()) return std::string();
-    return std::string(found->second.data(), found->second.size());
-  };
-  EXPECT_EQ(pushback(1), "10000");  // TOO_MANY_JOBS
-  EXPECT_EQ(pushback(6), "");       // TOO_MANY_POINTS
-}
-
 // ---- Cancel, Delete, Update ----
 
 TEST(EnsembleService, OnlyARetryCancelsAnEndedJob) {
@@ -57,9 +34,7 @@ TEST(EnsembleService, AnUpdateSetsTheFieldsOfItsMask) {
     request.mutable_job()->set_pinned(row.pinned);
     request.mutable_job()->set_priority(row.priority);
     for (const std::string& path : row.mask) request.mutable_update_mask()->add_paths(path);
-    grpc::ClientContext context;
-    EnsembleJob job;
-    EXPECT_OK(server.ensemble().UpdateEnsembleJob(&context, request, &job));
+    const auto job = server.Answered<EnsembleJob>(request);
     EXPECT_EQ(job.pinned(), row.is_pinned);
     EXPECT_EQ(job.priority(), row.has_priority);
     EXPECT_EQ(server.Get(name).pinned(), row.is_pinned);
@@ -78,7 +53,7 @@ TEST(EnsembleService, PagesOfLargeJobsStayBelowTwoMebibytes) {
   Gate gate;
   RunningServer server({.factory = GatedExperiments(gate)});
   for (int i = 0; i < 4; ++i) server.Submit(LargeEquilibrium());
-  const auto pages = server.Pages(v1::ListEnsembleJobsRequest());
+  const auto pages = server.Pages<v1::ListEnsembleJobsResponse>(v1::ListEnsembleJobsRequest());
   int listed = 0;
   for (const auto& page : pages) {
     EXPECT_LT(page.ByteSizeLong(), size_t{2} << 20);
@@ -107,8 +82,7 @@ TEST(EnsembleService, JobsAreFilteredAndAPageTokenIsValidOnlyWithItsFilters) {
   experiments.clear_experiments();
   since.mutable_since()->set_seconds(1);
   for (const auto& other : {states, experiments, since}) {
-    const grpc::Status refused = CallByName(server.channel(), kListJobs, other.SerializeAsString());
-    EXPECT_THAT(DetailsOf(refused).fields, ElementsAre("page_token"));
+    EXPECT_THAT(DetailsOf(server.Call(other)).fields, ElementsAre("page_token"));
   }
   v1::ListEnsembleJobsRequest failed;
   failed.add_states(EnsembleJob::FAILED);
@@ -123,15 +97,9 @@ TEST(EnsembleService, AnUnfinishedPointIsReadOnRequestOnly) {
   v1::GetResultRequest request;
   request.set_name(server.Submit(Equilibrium(1, 100)) + "/results/0");
   gate.AwaitWaiting(2);  // three blocks are merged; the others wait
-  v1::PointResult result;
-  const auto get = [&] {
-    grpc::ClientContext context;
-    return server.ensemble().GetResult(&context, request, &result);
-  };
-  EXPECT_EQ(ReasonOf(get()), "RESULT_NOT_FOUND");
+  EXPECT_EQ(ReasonOf(server.Call(request)), "RESULT_NOT_FOUND");
   request.set_unfinished(true);
-  EXPECT_OK(get());
-  EXPECT_EQ(result.samples(), 3 * kFakeSamplesPerBlock);
+  EXPECT_EQ(server.Answered<v1::PointResult>(request).samples(), 3 * kFakeSamplesPerBlock);
 }
 
 TEST(EnsembleService, TheBasicViewHasNoHistograms) {
@@ -142,7 +110,7 @@ TEST(EnsembleService, TheBasicViewHasNoHistograms) {
     v1::ListResultsRequest request;
     request.set_parent(name);
     request.set_view(view);
-    const v1::ListResultsResponse response = server.Results(request);
+    const auto response = server.Answered<v1::ListResultsResponse>(request);
     ASSERT_EQ(response.results_size(), 6);
     EXPECT_EQ(response.results(0).histograms().empty(), view == v1::ListResultsRequest::BASIC);
     EXPECT_GT(response.results(0).estimates_size(), 0);
@@ -160,7 +128,7 @@ TEST(EnsembleService, PagesOfHistogramsStayBelowTwoMebibytes) {
   v1::ListResultsRequest request;
   request.set_parent(name);
   request.set_page_size(1000);
-  const auto pages = server.Pages(request);
+  const auto pages = server.Pages<v1::ListResultsResponse>(request);
   int points = 0;
   for (const auto& page : pages) {
     EXPECT_LE(page.ByteSizeLong(), (size_t{2} << 20) + 1024);

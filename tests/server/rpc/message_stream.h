@@ -7,6 +7,14 @@ namespace ballpiston::server {
 
 template <typename Message>
 struct MessageStream {
+  // The type of the request decides the method.
+  MessageStream(const TestClient& client, const google::protobuf::Message& request)
+      : reader(grpc::internal::ClientReaderFactory<Message>::Create(
+            client.channel().get(),
+            grpc::internal::RpcMethod(PathOf(*request.GetDescriptor()).c_str(),
+                                      grpc::internal::RpcMethod::SERVER_STREAMING),
+            &context, request)) {}
+
   std::optional<Message> Next() {
     Message message;
     if (!reader->Read(&message)) return std::nullopt;
@@ -35,28 +43,19 @@ struct MessageStream {
 using WatchMessage = v1::WatchEnsembleJobResponse;
 
 struct WatchStream : MessageStream<WatchMessage> {
-  WatchStream(TestClient& client, const std::string& name, const std::string& resume_token = "") {
+  WatchStream(const TestClient& client, const std::string& name,
+              const std::string& resume_token = "")
+      : MessageStream(client, RequestOf(name, resume_token)) {}
+
+  static v1::WatchEnsembleJobRequest RequestOf(const std::string& name,
+                                               const std::string& resume_token) {
     v1::WatchEnsembleJobRequest request;
     request.set_name(name);
     request.set_resume_token(resume_token);
-    reader = client.ensemble().WatchEnsembleJob(&context, request);
-  }
-
-  // Reads until a message meets the condition, and returns this message.
-  template <typename Condition>
-  WatchMessage Until(Condition condition) {
-    while (auto message = Next()) {
-      if (condition(*message)) return *message;
-    }
-    ADD_FAILURE() << "the stream ended: " << reader->Finish().error_message();
-    return {};
+    return request;
   }
 };
 
-struct TraceStream : MessageStream<v1::TraceOrbitResponse> {
-  TraceStream(TestClient& client, const v1::TraceOrbitRequest& request) {
-    reader = client.trace().TraceOrbit(&context, request);
-  }
-};
+using TraceStream = MessageStream<v1::TraceOrbitResponse>;
 
 }  // namespace ballpiston::server

@@ -28,17 +28,14 @@ class PlanServiceTest : public testing::Test {
   static void SetUpTestSuite() { server_ = new RunningServer({.factory = nullptr}); }
   static void TearDownTestSuite() { delete server_; }
 
-  static grpc::Status Plan(const v1::EnsembleSpec& spec, v1::PlanEnsembleJobResponse* plan) {
-    grpc::ClientContext context;
+  static v1::PlanEnsembleJobRequest Request(const v1::EnsembleSpec& spec) {
     v1::PlanEnsembleJobRequest request;
     *request.mutable_spec() = spec;
-    return server_->ensemble().PlanEnsembleJob(&context, request, plan);
+    return request;
   }
 
   static v1::PlanEnsembleJobResponse PlanOf(const v1::EnsembleSpec& spec) {
-    v1::PlanEnsembleJobResponse plan;
-    EXPECT_OK(Plan(spec, &plan));
-    return plan;
+    return server_->Answered<v1::PlanEnsembleJobResponse>(Request(spec));
   }
 
   // The extra time of a job's first point, because caches are cold.
@@ -74,33 +71,19 @@ TEST_F(PlanServiceTest, EveryExperimentHasItsLadderCheapestFirst) {
   }
 }
 
-TEST_F(PlanServiceTest, TheWorkIsThatOfTheChosenOneOverAllPoints) {
-  v1::EnsembleSpec spec = QuestionOf(kFirstHit);
-  for (const double delta : {0.2, 0.05}) spec.mutable_grid()->add_delta(delta);
-  const v1::PlanEnsembleJobResponse plan = PlanOf(spec);
-  ASSERT_EQ(plan.points_size(), 3);
-  EXPECT_NEAR(plan.work(), FirstPoint() + WorkOfPoints(plan), 1e-9);
-  EXPECT_EQ(plan.workers(), 2);
-  // The store's thread may share the workers' cores.
-  EXPECT_GE(plan.time(), plan.work() / 2);
-  EXPECT_LE(plan.time(), plan.work() + 0.1);
-  EXPECT_EQ(server_->List().jobs_size(), 0);  // a plan creates no job
-}
-
 // At delta = 3e-5 the lanes of a worker need more than a minute until their first orbits end.
 TEST_F(PlanServiceTest, ABudgetBelowTheFirstSamplesIsRejected) {
   v1::EnsembleSpec spec = QuestionOf(kEquilibrium);
   spec.mutable_grid()->set_delta(0, 3e-5);
   spec.set_model(v1::EnsembleSpec::BILLIARD);
   spec.mutable_target()->mutable_budget()->set_seconds(1);
-  v1::PlanEnsembleJobResponse plan;
-  const grpc::Status status = Plan(spec, &plan);
-  EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT, HasSubstr("budget >= ")));
-  EXPECT_THAT(DetailsOf(status).fields, ElementsAre("spec.target.budget"));
-  const grpc::Status created = server_->Create(CreateRequest(spec));
-  EXPECT_THAT(created, StatusIs(grpc::StatusCode::INVALID_ARGUMENT, HasSubstr("budget >= ")));
+  for (const grpc::Status& status :
+       {server_->Call(Request(spec)), server_->Call(CreateRequest(spec))}) {
+    EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT, HasSubstr("budget >= ")));
+    EXPECT_THAT(DetailsOf(status).fields, ElementsAre("spec.target.budget"));
+  }
   spec.set_model(v1::EnsembleSpec::AUTO);  // the closed form needs no samples
-  EXPECT_OK(Plan(spec, &plan));
+  PlanOf(spec);
 }
 
 TEST_F(PlanServiceTest, MemoryIsThatOfTheLargestGas) {
@@ -126,6 +109,11 @@ TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandOfItsPoints) {
     EXPECT_LE(plan.points(i).parameters().delta(), spec.grid().delta(100 * i + 99));
   }
   EXPECT_NEAR((plan.work() - FirstPoint()) / (100 * WorkOfPoints(plan)), 1, 1e-9);
+  EXPECT_EQ(plan.workers(), 2);
+  // The store's thread may share the workers' cores.
+  EXPECT_GE(plan.time(), plan.work() / 2);
+  EXPECT_LE(plan.time(), plan.work() + 0.1);
+  EXPECT_EQ(server_->List().jobs_size(), 0);  // a plan creates no job
 }
 
 // Every second point takes 150 times as long.

@@ -59,11 +59,7 @@ TEST(UnreadAnswers, CountAsCallsInProgress) {
   RunningServer server({.factory = GatedExperiments(gate)});
   v1::GetEnsembleJobRequest request;
   request.set_name(server.Submit(LargeEquilibrium()));
-  const auto evaluate = [&server] {
-    grpc::ClientContext context;
-    v1::EvaluatePairsResponse response;
-    return ReasonOf(server.analytic().EvaluatePairs(&context, {}, &response));
-  };
+  const auto evaluate = [&server] { return ReasonOf(server.Call(v1::EvaluatePairsRequest())); };
   const auto channel = OwnChannel(server.address(), nullptr, SmallWindow());
   std::vector<std::unique_ptr<NamedCall>> unread;
   for (int64_t mib = 0; mib < 2 * kMostMibOfCalls; mib += kMibOfCall) {

@@ -1,11 +1,9 @@
 #include "server/rpc/server_status.h"
 
-#include "grpcpp/server.h"
-#include "grpcpp/server_builder.h"
+#include "grpcpp/test/server_context_test_spouse.h"
 #include "prometheus/text_serializer.h"
 #include "server/rpc/call.h"
 #include "server/rpc/methods.h"
-#include "server/rpc/services.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
@@ -66,32 +64,23 @@ class ServerStatusTest : public testing::Test {
                           .store_path = folder_.File("store.sqlite3")};
 };
 
-// Answers every call of EvaluatePairs with an exception.
-class ThrowingService : public ServiceOf<v1::AnalyticService::Service> {
- public:
-  using ServiceOf::ServiceOf;
-
-  grpc::Status EvaluatePairs(grpc::ServerContext* context, const v1::EvaluatePairsRequest*,
-                             v1::EvaluatePairsResponse*) override {
-    return ServeCall(service_, *context, {"EvaluatePairs", Role::kRead},
-                     [](const Call&) -> absl::Status { throw std::runtime_error("no memory"); });
-  }
-};
-
 TEST_F(ServerStatusTest, AnExceptionEndsTheCallOnly) {
-  ThrowingService service(context_);
-  const std::string address = "unix:" + folder_.File("socket");
-  const auto server = grpc::ServerBuilder()
-                          .RegisterService(&service)
-                          .AddListeningPort(address, grpc::InsecureServerCredentials())
-                          .BuildAndStart();
-  TestClient client(OwnChannel(address));
-  for (int i = 0; i < 2; ++i) {
-    grpc::ClientContext context;
-    v1::EvaluatePairsResponse response;
-    EXPECT_THAT(client.analytic().EvaluatePairs(&context, {}, &response),
-                IsError(grpc::StatusCode::INTERNAL, "INTERNAL"));
-  }
+  grpc::ServerContext context;
+  EXPECT_THAT(ServeCall(context_, context, {"EvaluatePairs", Role::kRead},
+                        [](const Call&) -> absl::Status { throw std::runtime_error("no memory"); }),
+              IsError(grpc::StatusCode::INTERNAL, "INTERNAL"));
+}
+
+// gRPC's own retries obey the metadata.
+TEST_F(ServerStatusTest, ALimitThatWaitingCuresTellsHowLong) {
+  const auto metadata = [this](const char* reason) {
+    grpc::ServerContext context;
+    ServeCall(context_, context, {"CreateEnsembleJob", Role::kSubmit},
+              [&](const Call&) { return LimitExceeded(reason, "it", "flag", 1); });
+    return grpc::testing::ServerContextTestSpouse(&context).GetTrailingMetadata();
+  };
+  EXPECT_THAT(metadata("TOO_MANY_JOBS"), ElementsAre(Pair("grpc-retry-pushback-ms", "10000")));
+  EXPECT_THAT(metadata("TOO_MANY_POINTS"), IsEmpty());
 }
 
 TEST_F(ServerStatusTest, CountsQueuedAndRunningWork) {

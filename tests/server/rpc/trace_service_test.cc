@@ -21,18 +21,17 @@ const v1::TraceOrbitRequest kLong = TraceRequest(kMaxTracedEvents);
 
 class TraceServiceTest : public testing::Test {
  protected:
-  RunningServer& server() { return server_ ? *server_ : server_.emplace(); }
-
   std::vector<v1::TraceOrbitResponse> Trace(const v1::TraceOrbitRequest& request) {
-    TraceStream stream(server(), request);
+    TraceStream stream(server_, request);
     auto messages = stream.ToTheEnd();
     EXPECT_OK(stream.reader->Finish());
     return messages;
   }
 
-  std::optional<RunningServer> server_;
+  RunningServer server_;
 };
 
+// A free time is that since the last event of the same kind: a pair has one ball and one piston.
 TEST_F(TraceServiceTest, TheStartComesFirstThenAsManyEventsAsAsked) {
   for (const int64_t events : {1, kEventsOfMessage, kEventsOfMessage + 1, 1000}) {
     const auto messages = Trace(TraceRequest(events));
@@ -44,12 +43,17 @@ TEST_F(TraceServiceTest, TheStartComesFirstThenAsManyEventsAsAsked) {
     EXPECT_EQ(messages[0].events_size(), 0);
     int64_t told = 0;
     double time = 0;
+    std::map<int, double> last;  // by kind
     for (const auto& message : messages) {
       told += message.events_size();
       EXPECT_LE(message.events_size(), kEventsOfMessage);
       for (const v1::TraceEvent& event : message.events()) {
         EXPECT_GE(event.time(), time);
         time = event.time();
+        EXPECT_EQ(event.has_free_time(), last.contains(event.event()));
+        EXPECT_NEAR(event.free_time(),
+                    last.contains(event.event()) ? time - last[event.event()] : 0, 1e-9);
+        last[event.event()] = time;
       }
     }
     EXPECT_EQ(told, events);
@@ -77,27 +81,10 @@ TEST_F(TraceServiceTest, EventsHaveTheBodiesThatTakePart) {
   EXPECT_GT(exchanges, 0);
 }
 
-// The time since the pair's last event of the same kind. A pair has one ball and one piston.
-TEST_F(TraceServiceTest, FreeTimesAreBetweenEventsOfOneKind) {
-  std::map<int, double> last;  // time, by kind
-  for (const auto& message : Trace(TraceRequest(2000))) {
-    for (const v1::TraceEvent& event : message.events()) {
-      const auto before = last.find(event.event());
-      EXPECT_EQ(event.has_free_time(), before != last.end());
-      if (before != last.end()) {
-        EXPECT_NEAR(event.free_time(), event.time() - before->second, 1e-9);
-      }
-      last[event.event()] = event.time();
-    }
-  }
-  EXPECT_EQ(last.size(), 3u);
-}
-
 // ---- limits, and the end ----
 
 TEST_F(TraceServiceTest, ATraceCountsAsAStreamUntilItsReaderGoes) {
-  RunningServer& server =
-      server_.emplace(TestServerOptions{.limits = {.max_streams_per_principal = 1}});
+  RunningServer server({.limits = {.max_streams_per_principal = 1}});
   auto first = std::make_unique<TraceStream>(server, TraceRequest(kMaxTracedEvents, "1000"));
   ASSERT_TRUE(first->Next());
   EXPECT_THAT(TraceStream(server, TraceRequest(1)).End(),
@@ -110,21 +97,19 @@ TEST_F(TraceServiceTest, ATraceCountsAsAStreamUntilItsReaderGoes) {
 
 // A call with a large request counts as more than a trace.
 TEST_F(TraceServiceTest, TheMemoryOfTracesIsLimited) {
-  TestClient reader(OwnChannel(server().address(), nullptr, SmallWindow()));
+  TestClient reader(OwnChannel(server_.address(), nullptr, SmallWindow()));
   std::vector<std::unique_ptr<TraceStream>> traces;
   v1::EvaluatePairsRequest large;  // 0.8 MB
   large.mutable_rho()->Resize(100'000, kPaperRho);
   for (int64_t mib = 0; mib < kMostMibOfCalls; mib += kMibOfCall) {
     if (mib == kMostMibOfCalls - kMibOfCall) {
-      grpc::ClientContext context;
-      v1::EvaluatePairsResponse response;
-      EXPECT_THAT(server().analytic().EvaluatePairs(&context, large, &response),
+      EXPECT_THAT(server_.Call(large),
                   IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CALLS"));
     }
     traces.push_back(std::make_unique<TraceStream>(reader, kLong));
     ASSERT_TRUE(traces.back()->Next());
   }
-  EXPECT_THAT(TraceStream(server(), TraceRequest(1)).End(),
+  EXPECT_THAT(TraceStream(server_, TraceRequest(1)).End(),
               IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CALLS"));
 }
 
@@ -133,11 +118,10 @@ TEST_F(TraceServiceTest, TheMemoryOfTracesIsLimited) {
 TEST_F(TraceServiceTest, SampledCollisionsHaveAllColumns) {
   v1::SampleCollisionsRequest request;
   *request.mutable_spec() = Equilibrium(1, 100);
-  grpc::ClientContext context;
-  const auto reader = server().trace().SampleCollisions(&context, request);
-  v1::SampleCollisionsResponse rows, part;
-  while (reader->Read(&part)) rows.MergeFrom(part);
-  ASSERT_OK(reader->Finish());
+  MessageStream<v1::SampleCollisionsResponse> stream(server_, request);
+  v1::SampleCollisionsResponse rows;
+  while (const auto part = stream.Next()) rows.MergeFrom(*part);
+  ASSERT_OK(stream.reader->Finish());
   const auto* columns = rows.GetDescriptor();
   for (int i = 0; i < columns->field_count(); ++i) {
     ASSERT_EQ(rows.GetReflection()->FieldSize(rows, columns->field(i)), 100) << i;
@@ -154,9 +138,9 @@ TEST_F(TraceServiceTest, SampledCollisionsHaveAllColumns) {
 }
 
 TEST_F(TraceServiceTest, AStopEndsTracesThatAreRead) {
-  TraceStream stream(server(), kLong);
+  TraceStream stream(server_, kLong);
   ASSERT_TRUE(stream.Next());
-  std::thread stop([this] { server().Shutdown(kUnreachedLimit); });
+  std::thread stop([this] { server_.Shutdown(kUnreachedLimit); });
   EXPECT_THAT(stream.End(), IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));
   stop.join();
 }

@@ -2,11 +2,10 @@
 #include "server/rpc/request_check.h"
 #include "tests/server/preamble.h"
 #include "tests/server/rpc/message_stream.h"
+#include "tests/server/secure_server.h"
 
 namespace ballpiston::server {
 namespace {
-
-bool HasPoints(const WatchMessage& message) { return message.snapshot().points_size() > 0; }
 
 // The finished points in the messages, in their order.
 std::vector<int> FinishedIn(const std::vector<WatchMessage>& messages) {
@@ -72,7 +71,7 @@ TEST_F(WatchTest, AfterARestartForAnotherEngineAllIsSentAgain) {
   const std::string name = Start().Succeeded(Equilibrium(3, 1));
   const std::string token = WatchStream(*server_, name).ToTheEnd().back().resume_token();
   server_.reset();
-  ChangeJobs(folder_.File("store.sqlite3"), [](EnsembleJob& job) {
+  ChangeJob(folder_.File("store.sqlite3"), name, [](EnsembleJob& job) {
     job.set_state(EnsembleJob::RUNNING);
     job.set_engine_version("0.0.1");
   });
@@ -83,23 +82,19 @@ TEST_F(WatchTest, WithATokenOnlyNewerStateIsSent) {
   RunningServer& server = Start(7, std::chrono::milliseconds(20));
   const std::string name = server.Submit(Equilibrium(1, 100));
   gate_.AwaitWaiting(2);  // seven blocks are done; the others wait
-  std::string token;
-  {
-    WatchStream stream(server, name);
-    token = stream
-                .Until([](const WatchMessage& message) {
-                  return HasPoints(message) &&
-                         message.snapshot().points(0).samples() == 7 * kFakeSamplesPerBlock;
-                })
-                .resume_token();
-    stream.context.TryCancel();
-  }
-  WatchStream again(server, name, token);
+  WatchStream stream(server, name);
+  std::optional<WatchMessage> message;
+  do {
+    ASSERT_TRUE(message = stream.Next());
+  } while (message->snapshot().points().empty() ||
+           message->snapshot().points(0).samples() != 7 * kFakeSamplesPerBlock);
+  stream.Leave();
+  WatchStream again(server, name, message->resume_token());
   EXPECT_TRUE(again.Next()->has_job());
-  again.Until([](const WatchMessage& message) {
-    EXPECT_FALSE(HasPoints(message));
-    return message.has_heartbeat();
-  });
+  do {
+    ASSERT_TRUE(message = again.Next());
+    EXPECT_TRUE(message->snapshot().points().empty());
+  } while (!message->has_heartbeat());
 }
 
 // ---- messages ----
@@ -127,6 +122,80 @@ TEST_F(WatchTest, TheJobHasNoGrid) {
   EXPECT_FALSE(first->job().spec().has_grid());
   EXPECT_EQ(first->job().spec().experiment(), v1::EnsembleSpec::EQUILIBRIUM);
   EXPECT_EQ(first->job().progress().points(), 90'000);
+}
+
+// ---- a watch or a trace ends when the credentials of its call become invalid ----
+
+class WatchCredentialsTest : public testing::Test {
+ protected:
+  TestClient ClientWith(const char* token) const {
+    return TestClient(server_.NewChannel(files_.Credentials(token)));
+  }
+
+  void ReplaceAccess(const std::string& lines) {
+    files_.WriteAccessFile(lines);
+    ASSERT_OK(server_.server().Reload());
+  }
+
+  Gate gate_;
+  LaboratoryFiles files_;
+  RunningServer server_{Secure(files_, {.factory = GatedExperiments(gate_),
+                                        .watch = {.heartbeat = std::chrono::milliseconds(20)}})};
+  TestClient alice_ = ClientWith(kAlice);
+  TestClient ops_ = ClientWith(kOps);
+};
+
+TEST_F(WatchCredentialsTest, AWatchEndsWhenItsTokenIsNoLongerValid) {
+  const absl::Time past = absl::FromUnixSeconds(1'000'000'000);
+  const std::string ops = TokenLine(kOps, {"ops", Role::kAdmin});
+  const struct {
+    const char* token;
+    std::string access_file;
+    const char* reason;
+  } rows[] = {
+      {kAlice, ops, "CREDENTIALS_INVALID"},  // revoked
+      {kAlice, TokenLine(kAlice, {"alice", Role::kSubmit}, past), "CREDENTIALS_EXPIRED"},
+      {kAlice, TokenLine(kAlice, {"bob", Role::kAdmin}), "CREDENTIALS_INVALID"},
+      {kOps, TokenLine(kOps, {"ops", Role::kSubmit}), "JOB_NOT_FOUND"}};  // of another's job
+  const std::string job = alice_.Submit(Equilibrium(1, 2));               // waits at the gate
+  for (const auto& [token, access_file, reason] : rows) {
+    ReplaceAccess(LaboratoryTokens());
+    TestClient client = ClientWith(token);
+    WatchStream watch(client, job);
+    ASSERT_TRUE(watch.Next());
+    ReplaceAccess(access_file);
+    EXPECT_EQ(ReasonOf(watch.End()), reason) << access_file;
+  }
+}
+
+// The trace has far more events than gRPC keeps of a stream whose reader stalls.
+TEST_F(WatchCredentialsTest, ATraceEndsWhenItsTokenIsRevoked) {
+  TraceStream trace(alice_,
+                    FromText<v1::TraceOrbitRequest>("rho: 0.53 delta: 0.15 events: 1000000"));
+  ASSERT_TRUE(trace.Next());
+  ReplaceAccess(TokenLine(kOps, {"ops", Role::kAdmin}));
+  EXPECT_THAT(trace.End(), Not(IsOk()));  // CANCELLED if the reader was slow
+}
+
+TEST_F(WatchCredentialsTest, AWatchWithAValidTokenGoesOn) {
+  WatchStream watch(alice_, alice_.Submit(Equilibrium(1, 2)));
+  ReplaceAccess(LaboratoryTokens());
+  for (int beats = 0; beats < 3;) {
+    const auto message = watch.Next();
+    ASSERT_TRUE(message);
+    beats += message->has_heartbeat();
+  }
+}
+
+TEST_F(WatchCredentialsTest, AStalledReaderLosesItsWatchToo) {
+  gate_.Open();
+  const std::string name = alice_.Succeeded(Equilibrium(20'000, 1));  // some MB of points
+  TestClient slow(OwnChannel(server_.address(), files_.Credentials(kAlice), SmallWindow()));
+  WatchStream stalled(slow, name);
+  AwaitThat([this] { return ops_.Status().streams() == 1; });  // the server has the watch
+  ReplaceAccess(TokenLine(kOps, {"ops", Role::kAdmin}));
+  AwaitThat([this] { return ops_.Status().streams() == 0; });
+  EXPECT_THAT(stalled.End(), Not(IsOk()));
 }
 
 }  // namespace

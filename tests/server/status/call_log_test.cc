@@ -43,14 +43,9 @@ TEST(CallLog, AJobsLifeIsLoggedWithJobAndPrincipal) {
 TEST(CallLog, CallsOverALimitAreLoggedAndInvalidCallsAreNot) {
   const auto lines = LinesOf([&] {
     RunningServer server({.limits = {.max_points_per_job = 10}});
-    EXPECT_FALSE(server.Create({}).ok());
-    EXPECT_FALSE(server.Create(CreateRequest(Equilibrium(11, 1))).ok());
-    grpc::ClientContext context;
-    v1::EnsembleJob job;
-    v1::GetEnsembleJobRequest none;
-    none.set_name("ensembleJobs/none");
-    EXPECT_THAT(server.ensemble().GetEnsembleJob(&context, none, &job),
-                StatusIs(grpc::StatusCode::NOT_FOUND));
+    EXPECT_FALSE(server.Call(v1::CreateEnsembleJobRequest()).ok());
+    EXPECT_FALSE(server.Call(CreateRequest(Equilibrium(11, 1))).ok());
+    EXPECT_THAT(server.Delete("ensembleJobs/none"), StatusIs(grpc::StatusCode::NOT_FOUND));
   });
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0],

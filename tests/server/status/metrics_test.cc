@@ -74,7 +74,7 @@ TEST_F(MetricsTest, CountersCountCallsJobsAndSamples) {
   RunningServer& server = Start();
   std::string name;
   for (int i = 0; i < 3; ++i) name = server.Succeeded(Equilibrium(2, 50));
-  EXPECT_FALSE(server.Create(CreateRequest(Equilibrium(11, 1))).ok());
+  EXPECT_FALSE(server.Call(CreateRequest(Equilibrium(11, 1))).ok());
   EXPECT_OK(CallByName(server.channel(), kReflection, kListServices));
   EXPECT_THAT(CallByName(server.channel(), "/no.such.Service/Method"),
               StatusIs(grpc::StatusCode::UNIMPLEMENTED));

@@ -2,9 +2,9 @@
 
 #include <pwd.h>
 
-#include "absl/cleanup/cleanup.h"
 #include "server/store/folder_sync.h"
 #include "tests/support/preamble.h"
+#include "tests/support/scoped_limit.h"
 #include "tests/support/scoped_variable.h"
 
 namespace ballpiston::server {
@@ -131,11 +131,7 @@ TEST(SyncNameOf, FlushesTheFolderThatHasTheName) {
   EXPECT_OK(SyncNameOf("data"));
   EXPECT_OK(SyncNameOf("/data"));
   // When no file can be opened, the error names the folder.
-  rlimit limit;
-  getrlimit(RLIMIT_NOFILE, &limit);
-  const absl::Cleanup restored = [limit] { setrlimit(RLIMIT_NOFILE, &limit); };
-  const rlimit none = {.rlim_cur = 0, .rlim_max = limit.rlim_max};
-  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  const ScopedLimit no_file(RLIMIT_NOFILE, 0);
   const std::pair<const char*, const char*> rows[] = {
       {"data", "."}, {"/data", "/"}, {"folder/data", "folder"}, {"/a/b/data", "/a/b"}};
   for (const auto& [path, folder] : rows) {

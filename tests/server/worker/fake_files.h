@@ -43,9 +43,9 @@ class FakeFiles : public SharedFiles {
     if (!begun.ok()) return begun;
     std::vector<std::string> names;
     const std::string prefix = subfolder + "/";
-    for (auto file = files.lower_bound(prefix); file != files.end(); ++file) {
-      if (!file->first.starts_with(prefix)) break;
-      const std::string name = file->first.substr(prefix.size());
+    for (const auto& [path, file] : files) {
+      if (!path.starts_with(prefix)) continue;
+      const std::string name = path.substr(prefix.size());
       if (!name.starts_with('.')) names.push_back(name);
     }
     operations += static_cast<double>(names.size()) / kNamesOfAnAnswer;
@@ -64,25 +64,19 @@ class FakeFiles : public SharedFiles {
     const absl::Status begun = Find("read", path);
     if (!begun.ok()) return begun;
     const std::string& bytes = files[path].bytes;
-    return offset > bytes.size() ? "" : bytes.substr(offset);
+    return bytes.substr(std::min(offset, bytes.size()));
   }
 
   absl::Status Append(const std::string& path, absl::string_view bytes) override {
     absl::Status begun = Find("append", path);
-    if (!begun.ok()) return begun;
-    files[path].bytes.append(bytes.data(), bytes.size());
-    files[path].time = Tick();
-    return absl::OkStatus();
+    if (begun.ok()) files[path] = {absl::StrCat(files[path].bytes, bytes), Tick()};
+    return begun;
   }
 
   absl::Status Move(const std::string& from, const std::string& to) override {
     absl::Status begun = Find("move", from);
-    if (!begun.ok()) return begun;
-    auto file = files.extract(from);
-    file.key() = to;
-    files.erase(to);
-    files.insert(std::move(file));
-    return absl::OkStatus();
+    if (begun.ok()) files[to] = files.extract(from).mapped();
+    return begun;
   }
 
   absl::Status Touch(const std::string& path) override {

@@ -54,10 +54,6 @@ std::vector<EnsembleSpec> EverySampledSpec() {
   return specs;
 }
 
-std::string NameOf(const EnsembleSpec& spec) {
-  return absl::StrCat(spec.experiment->name, " by ", Name(spec.model));
-}
-
 Lease LeaseOf(const EnsembleSpec& spec, uint64_t first, uint64_t end) {
   Lease lease = {.run = 12, .generation = 3};
   lease.spec = std::make_shared<const EnsembleSpec>(spec);
@@ -70,6 +66,17 @@ Lease LeaseOf(const EnsembleSpec& spec, uint64_t first, uint64_t end) {
 
 storage::Lease RecordOf(const Lease& lease, double touch_seconds) {
   return LeaseRecord(lease, "a server", touch_seconds);
+}
+
+std::vector<ChunkResult> ComputedChunks(const Lease& lease) {
+  ChunkFold fold(lease.experiment->plan(), lease.start, lease.end, lease.groups);
+  std::vector<ChunkResult> chunks;
+  while (const std::optional<Block> block = fold.NextBlock()) {
+    for (ChunkResult& chunk : fold.Add(*block, RunBlock(*lease.experiment, *block))) {
+      chunks.push_back(std::move(chunk));
+    }
+  }
+  return chunks;
 }
 
 LeaseReport ReportsIn(absl::string_view file) {

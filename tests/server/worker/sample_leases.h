@@ -3,8 +3,8 @@
 
 #include "core/ensemble/ensemble_spec.h"
 #include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
 #include "server/worker/lease_file.h"
-#include "tests/server/worker/computed_chunks.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::server {
@@ -17,13 +17,15 @@ EnsembleSpec SpecOf(const ExperimentKind& kind, Model model, int64_t samples = k
 // One of each experiment and sampling model, of several chunks.
 std::vector<EnsembleSpec> EverySampledSpec();
 
-std::string NameOf(const EnsembleSpec& spec);  // for messages
-
 // Chunks first ... end - 1 of the spec's point; end 0 means all.
 Lease LeaseOf(const EnsembleSpec& spec, uint64_t first = 0, uint64_t end = 0);
 
 // The record of the lease, from some server.
 storage::Lease RecordOf(const Lease& lease, double touch_seconds = 20);
+
+// The chunks of a lease in order, as a worker computes them: block by block, with what the lease
+// has of its first chunk.
+std::vector<ChunkResult> ComputedChunks(const Lease& lease);
 
 // All reports in the file of a lease, merged into one.
 LeaseReport ReportsIn(absl::string_view file);

@@ -141,13 +141,6 @@ TEST_F(WorkerProgramTest, WrongFlagsAreUsageErrors) {
   }
 }
 
-TEST_F(WorkerProgramTest, AFolderThatDoesNotExistIsAnError) {
-  std::filesystem::remove_all(shared_);
-  const ProcessResult result = RunProgram(Command());
-  EXPECT_THAT(result, ExitsWith(1));
-  EXPECT_THAT(result.err, HasSubstr(shared_));
-}
-
 TEST_F(WorkerProgramTest, WaitsForRoomInAFullFolderAndGivesUp) {
   Lay("a", LeaseOf(SpecOf(kFirstHit, Model::kBilliard)));
   const ProcessResult result =

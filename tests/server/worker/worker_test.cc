@@ -38,8 +38,8 @@ class WorkerTest : public testing::Test {
   }
 
   // The chunks that a worker computes for the lease.
-  std::vector<ChunkResult> Compute(const Lease& lease) {
-    Lay("a", lease);
+  std::vector<ChunkResult> Compute(const Lease& lease, double touch_seconds = 20) {
+    Lay("a", lease, touch_seconds);
     EXPECT_OK(Run());
     return Computed("done/a.me.finished");
   }
@@ -98,7 +98,6 @@ TEST_F(WorkerTest, AWorkerThatMustEndGivesItsLeaseBack) {
 }
 
 TEST_F(WorkerTest, AFolderThatIsAwayForAMomentIsReportedAndTheWorkGoesOn) {
-  Lay("a", lease_, 1e-9);
   seconds_of_a_look_ = 1e-6;
   bool is_away = true;
   files_.before = [&](const std::string& operation, const std::string&) {
@@ -106,17 +105,14 @@ TEST_F(WorkerTest, AFolderThatIsAwayForAMomentIsReportedAndTheWorkGoesOn) {
     return touches && std::exchange(is_away, false) ? absl::UnavailableError("gone")
                                                     : absl::OkStatus();
   };
-  EXPECT_OK(Run());
-  EXPECT_TRUE(AreEqual(Computed("done/a.me.finished"), chunks_));
+  EXPECT_TRUE(AreEqual(Compute(lease_, 1e-9), chunks_));
   EXPECT_THAT(lines_, ElementsAre("gone"));
 }
 
 TEST_F(WorkerTest, AFullFolderIsUsedAgainWhenItHasRoom) {
-  Lay("a", lease_);
   int refusals = 3;
   files_.Before("append", [&] { return refusals-- > 0 ? kFull : absl::OkStatus(); });
-  EXPECT_OK(Run());
-  EXPECT_TRUE(AreEqual(Computed("done/a.me.finished"), chunks_));
+  EXPECT_TRUE(AreEqual(Compute(lease_), chunks_));
   EXPECT_THAT(lines_, testing::Contains("no space left; retry in 5 s"));
 }
 
@@ -158,10 +154,9 @@ TEST_F(WorkerTest, ALeaseOfAnotherEngineStaysForOtherWorkers) {
 }
 
 TEST_F(WorkerTest, DamagedAndForeignFilesAreGivenBack) {
-  Lay("a", lease_);
-  files_.files["todo/a"].bytes[50] ^= 1;
   files_.files["todo/b"].bytes = "#!/bin/sh\necho this is a script of some length\n";
-  Lay("c", lease_);
+  for (const char* name : {"a", "c"}) Lay(name, lease_);
+  files_.files["todo/a"].bytes[50] ^= 1;
   files_.files["todo/c"].bytes.resize(100);  // a kill of the machine has cut it
   storage::Lease strange = RecordOf(lease_);
   strange.mutable_question()->set_model(77);
@@ -183,7 +178,7 @@ TEST_F(WorkerTest, AFolderThatCannotBeReadIsReportedAtOnceAndWhenTheWorkerEnds) 
 
 TEST_F(WorkerTest, ChunksHaveTheBitsOfAWholePoint) {
   for (const EnsembleSpec& spec : EverySampledSpec()) {
-    SCOPED_TRACE(NameOf(spec));
+    SCOPED_TRACE(absl::StrCat(spec.experiment->name, " by ", Name(spec.model)));
     const Lease lease = LeaseOf(spec);
     EXPECT_TRUE(AreEqual(Compute(lease), ComputedChunks(lease)));
   }
