@@ -71,10 +71,12 @@ TEST_F(Fold, BlocksAndChunksInAnyOrderGiveTheSameBits) {
     for (const Computed& block : blocks) Add(fold, block, chunks);
     ExpectChunks(chunks);
     EXPECT_TRUE(fold.finished());
+    EXPECT_EQ(fold.waiting(), 0u);
     PointFold point(*point_);
     uint64_t samples = 0;
     for (const ChunkResult& chunk : arrived) samples += point.Add(chunk);
     EXPECT_TRUE(point.finished());
+    EXPECT_EQ(point.waiting(), 0u);
     EXPECT_EQ(point.Merged(), expected);
     EXPECT_EQ(samples, 1000u);
     EXPECT_EQ(point.PlannedSamples(), 1000u);
