@@ -71,6 +71,25 @@ INSTANTIATE_TEST_SUITE_P(GasRun, GasRunOfEngine,
                          testing::Values(GasEngine::kReference, GasEngine::kLanes,
                                          GasEngine::kJumps));
 
+// A hand-made history: ball 0 gives 4 to the piston on its right, and piston 0 turns at a wall.
+TEST(GasMeter, CountsAndAveragesFromTheBeginOfTheWindow) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "3");
+  GasMeter meter(gas, AtRest(gas));
+  const auto exchange = [&meter](double time, double ball_energy) {
+    meter.See({EventKind::kBallPiston, time, 0, 1, Direction::kRight, ball_energy, 0.5});
+  };
+  exchange(0.5, 7);
+  meter.Begin(0.5);
+  exchange(1, 3);
+  meter.See({.kind = EventKind::kPistonWall, .time = 2.5, .piston = 0, .piston_energy = 9});
+  meter.End(4.5);
+  EXPECT_EQ(meter.exchanges(), 1u);
+  EXPECT_DOUBLE_EQ(meter.carried(), 4);
+  EXPECT_DOUBLE_EQ(meter.MeanEnergy(0), (0.5 * 7 + 3.5 * 3) / 4);
+  EXPECT_DOUBLE_EQ(meter.MeanEnergy(3), 2 * 9 / 4.0);
+  EXPECT_DOUBLE_EQ(meter.MeanEnergy(4), 0.5);
+}
+
 // ---- current_meter.h ----
 
 TEST(CurrentSteps, StepsHoldTheWholeCurrent) {
