@@ -80,6 +80,20 @@ inline EnsembleSpec Asked(const std::string& question) {
   return spec;
 }
 
+// All questions that a text with alternatives makes: "first-hit delta={0.1|0.2}" makes two.
+inline std::vector<std::string> QuestionsOf(const std::string& text) {
+  const size_t open = text.find('{'), close = text.find('}');
+  if (open == std::string::npos) return {text};
+  const std::vector<std::string> alternatives =
+      absl::StrSplit(text.substr(open + 1, close - open - 1), '|');
+  std::vector<std::string> questions;
+  for (const std::string& alternative : alternatives) {
+    const auto some = QuestionsOf(text.substr(0, open) + alternative + text.substr(close + 1));
+    questions.insert(questions.end(), some.begin(), some.end());
+  }
+  return questions;
+}
+
 // Matchers of a violation: of this field, and with these parts of its description.
 inline auto OfField(const std::string& field) { return Field(&FieldViolation::field, field); }
 

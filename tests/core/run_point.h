@@ -43,4 +43,35 @@ inline const Estimate& Named(std::string_view name, const std::vector<Estimate>&
   return estimates.front();
 }
 
+// Estimates and curves are those of `low` times these factors, to rounding, and so are their errors
+// and exact values; the places of the curves are those of `low` times `place`.
+inline void ExpectScaled(const PointSummary& low, const PointSummary& high,
+                         const std::vector<double>& estimates, const std::vector<double>& curves,
+                         double place) {
+  const auto expect = [](const std::optional<double>& of_low, const std::optional<double>& of_high,
+                         double factor) {
+    ASSERT_EQ(of_low.has_value(), of_high.has_value());
+    if (of_low) {
+      EXPECT_DOUBLE_EQ(*of_high, factor * *of_low);
+    }
+  };
+  ASSERT_EQ(high.estimates.size(), estimates.size());
+  for (size_t i = 0; i < estimates.size(); ++i) {
+    const Estimate &a = low.estimates[i], &b = high.estimates[i];
+    SCOPED_TRACE(a.name);
+    expect(a.value, b.value, estimates[i]);
+    expect(a.standard_error, b.standard_error, estimates[i]);
+    expect(a.exact, b.exact, estimates[i]);
+  }
+  for (size_t i = 0; i < curves.size(); ++i) {
+    ASSERT_EQ(high.curves[i].points.size(), low.curves[i].points.size());
+    for (size_t k = 0; k < low.curves[i].points.size(); ++k) {
+      const CurvePoint &a = low.curves[i].points[k], &b = high.curves[i].points[k];
+      expect(a.at, b.at, place);
+      expect(a.value, b.value, curves[i]);
+      expect(a.standard_error, b.standard_error, curves[i]);
+    }
+  }
+}
+
 }  // namespace ballpiston

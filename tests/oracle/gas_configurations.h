@@ -47,9 +47,11 @@ class ChainByQuadrature {
   // The rate of a contact at temperature T in a ring of so many cells: its flux sqrt(T/pi), times
   // the density of ball and piston on their collision surface.
   double RateOfRing(int cells, double temperature) const {
-    const Matrix others = Power(Kernel(), cells - 1);
+    const Matrix kernel = Kernel();
+    Matrix others = Matrix::Identity();
+    for (int cell = 1; cell < cells; ++cell) others *= kernel;
     const double contact = (others * Contact()).trace();
-    return std::sqrt(temperature / std::numbers::pi) * contact / (others * Kernel()).trace();
+    return std::sqrt(temperature / std::numbers::pi) * contact / (others * kernel).trace();
   }
 
  private:
@@ -87,15 +89,6 @@ class ChainByQuadrature {
   // Kernel() with the ball in contact with the piston at y.
   Matrix Contact() const {
     return Vector::Constant(1) * height_left_.cwiseProduct(weights_).transpose();
-  }
-
-  static Matrix Power(const Matrix& matrix, int exponent) {
-    Matrix power = Matrix::Identity(), square = matrix;
-    for (int rest = exponent; rest > 0; rest /= 2) {
-      if (rest % 2 == 1) power = power * square;
-      square = square * square;
-    }
-    return power;
   }
 
   Quad rho_, delta_, lambda_, cell_area_ = 0;

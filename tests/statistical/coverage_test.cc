@@ -17,31 +17,37 @@ namespace {
 
 constexpr double kProbability = 0.95;
 
-struct Measured {
-  double value;
-  double standard_error;
-  double freedom;  // degrees of freedom of Student's t
-};
+using Runs = std::vector<Estimate>;  // of one estimate
 
-// Of one estimate.
-struct Runs {
-  std::vector<Measured> with_error = {};
-  double sum = 0;  // of the values of all runs
-  double count = 0;
+struct OfAnEstimate {
+  Runs runs = {};  // all whose value is a number
   double expected = 0;
-
-  double Covered() const {
-    double covered = 0;
-    for (const Measured& run : with_error) {
-      const boost::math::students_t law(run.freedom);
-      const double t = boost::math::quantile(law, (1 + kProbability) / 2);
-      covered += std::fabs(run.value - expected) <= t * run.standard_error;
-    }
-    return covered / static_cast<double>(with_error.size());
-  }
 };
 
-using RunsByName = std::map<std::string, Runs>;
+using RunsByName = std::map<std::string, OfAnEstimate>;
+
+// Of Student's t; very many for a normal law.
+double FreedomOf(const Estimate& estimate) {
+  return estimate.batches == 0 ? 1e6 : static_cast<double>(estimate.batches) - 1;
+}
+
+// All runs have an error.
+double ShareCovered(const OfAnEstimate& of) {
+  double covered = 0;
+  for (const Estimate& run : of.runs) {
+    const boost::math::students_t law(FreedomOf(run));
+    const double t = boost::math::quantile(law, (1 + kProbability) / 2);
+    covered += std::fabs(run.value - of.expected) <= t * *run.standard_error;
+  }
+  return covered / static_cast<double>(of.runs.size());
+}
+
+template <typename Number>
+double MeanOf(const Runs& runs, Number number) {
+  double sum = 0;
+  for (const Estimate& run : runs) sum += number(run);
+  return sum / static_cast<double>(runs.size());
+}
 
 // The estimates, and four points of each curve: the last one, and those at 1/4, 1/16 and 1/32 of
 // the curve.
@@ -59,46 +65,31 @@ std::vector<Estimate> EstimatesAndCurves(const PointSummary& summary) {
   return all;
 }
 
-void AddRun(const PointSummary& summary, RunsByName& runs) {
-  for (const Estimate& estimate : EstimatesAndCurves(summary)) {
-    if (std::isnan(estimate.value)) continue;
-    Runs& of = runs[estimate.name];
-    of.sum += estimate.value;
-    ++of.count;
-    if (!estimate.standard_error) continue;
-    constexpr double kAsOfANormalLaw = 1e6;
-    const double freedom =
-        estimate.batches == 0 ? kAsOfANormalLaw : static_cast<double>(estimate.batches) - 1;
-    of.with_error.push_back({estimate.value, *estimate.standard_error, freedom});
-  }
-}
-
-void AddExpectations(const PointSummary& of_all, RunsByName& runs) {
-  for (const Estimate& estimate : EstimatesAndCurves(of_all)) {
-    Runs& of = runs[estimate.name];
-    of.expected =
-        estimate.noise_floor ? of.sum / of.count : estimate.exact.value_or(estimate.value);
-  }
-}
-
 RunsByName RunMany(EnsembleSpec spec, uint64_t runs) {
   RunsByName by_name;
   BlockResult all;
   for (spec.seed = 1; spec.seed <= runs; ++spec.seed) {
     const auto point = PointExperiment::Create(spec, 0);
     const BlockResult merged = FoldPoint(*point);
-    AddRun(point->Summarize(merged), by_name);
+    for (const Estimate& estimate : EstimatesAndCurves(point->Summarize(merged))) {
+      if (!std::isnan(estimate.value)) by_name[estimate.name].runs.push_back(estimate);
+    }
     all.Merge(merged);
   }
-  AddExpectations(PointExperiment::Create(spec, 0)->Summarize(all), by_name);
+  const PointSummary of_all = PointExperiment::Create(spec, 0)->Summarize(all);
+  for (const Estimate& estimate : EstimatesAndCurves(of_all)) {
+    OfAnEstimate& of = by_name[estimate.name];
+    of.expected = estimate.noise_floor
+                      ? MeanOf(of.runs, [](const Estimate& run) { return run.value; })
+                      : estimate.exact.value_or(estimate.value);
+  }
   return by_name;
 }
 
 // The relative number of runs that are outside by chance, 4.9 standard errors: a false alarm of
 // 1e-6 for each estimate.
 double Chance(const Runs& runs) {
-  return 4.9 *
-         std::sqrt(kProbability * (1 - kProbability) / static_cast<double>(runs.with_error.size()));
+  return 4.9 * std::sqrt(kProbability * (1 - kProbability) / static_cast<double>(runs.size()));
 }
 
 bool IsSkewed(std::string_view estimate) {
@@ -114,20 +105,20 @@ void ExpectCoverage(const std::string& question, int64_t samples, uint64_t runs)
   spec.target = {.samples = samples};
   for (const auto& [name, of] : RunMany(spec, runs)) {
     SCOPED_TRACE(absl::StrCat(question, ", ", name, ", ", samples, " samples"));
-    const auto shown = static_cast<double>(of.with_error.size());
-    EXPECT_TRUE(shown == 0 || shown == of.count) << shown;  // never decided by the sample
-    if (shown == 0) continue;
-    const double covered = of.Covered();
-    double freedom = 0;
-    for (const Measured& run : of.with_error) freedom += run.freedom / shown;
+    const double shown =
+        MeanOf(of.runs, [](const Estimate& run) { return run.standard_error ? 1 : 0; });
+    EXPECT_TRUE(of.runs.empty() || shown == 0 || shown == 1)
+        << shown;  // never decided by the sample
+    if (shown != 1) continue;
+    const double covered = ShareCovered(of);
     absl::PrintF("%-64s%-28s%7d%9.1f %%%10.0f\n", question, name, samples, 100 * covered,
-                 freedom + 1);
-    if (covered == 1 && of.with_error.front().standard_error <= 1e-12 * std::fabs(of.expected)) {
+                 MeanOf(of.runs, FreedomOf) + 1);
+    if (covered == 1 && *of.runs.front().standard_error <= 1e-12 * std::fabs(of.expected)) {
       continue;  // cannot fluctuate
     }
     const double least = samples == 64 && IsSkewed(name) ? 0.90 : 0.94;
-    EXPECT_GE(covered, least - Chance(of));
-    EXPECT_LE(covered, 0.96 + Chance(of));
+    EXPECT_GE(covered, least - Chance(of.runs));
+    EXPECT_LE(covered, 0.96 + Chance(of.runs));
   }
 }
 

@@ -33,14 +33,6 @@ TEST(Orbits, EveryOrbitMeetsThePistonOnTheCollisionSurface) {
       ExpectCollisionsOnTheSurface(geometry, Recorded(engine, geometry, orbits, 3), 3, rounding);
     }
   }
-  for (const double share : {1.0, 0.3, 0.03}) {
-    const PairGeometry other = GeometryAtShare(kPaperRho, share);
-    const RecordedCollisions lanes = Recorded(Engine::kLanes, other, 500, 4);
-    ExpectCollisionsOnTheSurface(other, lanes, 4, 1e-12);
-    for (const auto& collisions : lanes.by_orbit()) {
-      ASSERT_LE(EnergyError(collisions.back().state), 1e-14);
-    }
-  }
 }
 
 void ExpectNear(const Collision& first, const Collision& second, double tolerance) {
@@ -93,24 +85,6 @@ TEST(Orbits, PauseEndsARun) {
   for (const Engine engine : kEngines) {
     EXPECT_FALSE(Pauses(geometry, 10, 1).Run(engine, geometry, 10));
   }
-}
-
-// In single precision the lanes cannot resolve a cell that nearly vanishes.
-TEST(Orbits, EscapesInLanesAreReported) {
-  const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-5, 1);
-  class UntilAnEscape : public RecordedCollisions {
-   public:
-    using RecordedCollisions::RecordedCollisions;
-    AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
-      has_escaped |= collision.escaped;
-      return RecordedCollisions::Collide(orbit, collision);
-    }
-    bool Pause() override { return has_escaped; }
-    bool has_escaped = false;
-  };
-  UntilAnEscape single(geometry, 100'000, 20);
-  EXPECT_FALSE(single.Run(Engine::kLanesSingle, geometry, 100'000));
-  EXPECT_TRUE(single.has_escaped);
 }
 
 class CollisionsWithin : public RecordedCollisions {
@@ -188,43 +162,37 @@ struct AtRest {
   double error_in_single;
 };
 
-// The piston moves in either direction, at any phase.
-void AddBallsWithinTheReach(const PairGeometry& geometry, std::vector<AtRest>& balls) {
-  const double left = geometry.piston_left(), right = geometry.piston_right(), piston = 0.5;
-  for (const double share : {0.05, 0.5, 0.95}) {
-    const double x = left + share * geometry.delta();
-    for (const double velocity : {-1.0, 1.0}) {
-      const double way = velocity < 0 ? piston - x : right - piston + right - x;
-      balls.push_back({{.position = {x, 0}, .piston = piston, .piston_velocity = velocity},
-                       way,
-                       velocity < 0 ? 0u : 1u,
-                       1e-6});
-    }
-  }
-}
-
-// Balls at the very end of the reach, and the piston on them. In its lane such a ball may be
-// rounded out of the reach.
-void AddBallsAtTheEndOfTheReach(const PairGeometry& geometry, std::vector<AtRest>& balls) {
-  const double height = geometry.delta() * geometry.lambda();
+// Balls at the very end of the reach, and the piston on them: in its lane such a ball may be
+// rounded out of the reach. And, if the reach is wide, balls within it; the piston moves in either
+// direction.
+std::vector<AtRest> BallsAtRest(const PairGeometry& geometry) {
+  const double left = geometry.piston_left(), stroke = geometry.stroke();
+  std::vector<AtRest> balls;
   for (int i = 0; i < 300; ++i) {
-    const double angle = 2 * M_PI * i / 300, x = geometry.piston_left() + (i % 3) * 1e-17;
-    balls.push_back({{.position = {x, height * std::sin(7 * angle) / 2},
-                      .direction = {std::cos(angle), std::sin(angle)},
-                      .piston = x,
-                      .piston_velocity = 1},
-                     2 * geometry.stroke(),
-                     1,
-                     1e-14});
+    const double angle = 2 * M_PI * i / 300, x = left + (i % 3) * 1e-17;
+    const double y = geometry.delta() * geometry.lambda() * std::sin(7 * angle) / 2;
+    const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+    balls.push_back(
+        {{.position = {x, y}, .direction = direction, .piston = x, .piston_velocity = 1},
+         2 * stroke,
+         1,
+         1e-14});
   }
+  for (const double share : {0.05, 0.5, 0.95}) {
+    if (geometry.delta() < 0.1) continue;
+    const double x = left + share * geometry.delta();
+    PairState pair = {.position = {x, 0}, .piston = 0.5, .piston_velocity = -1};
+    balls.push_back({pair, 0.5 - x, 0, 1e-6});
+    pair.piston_velocity = 1;
+    balls.push_back({pair, stroke + 0.5 - x, 1, 1e-6});
+  }
+  return balls;
 }
 
 TEST(Orbits, ThePistonMeetsABallAtRestAtItsPlace) {
   for (const double delta : {1e-10, 1e-3, 0.05, 0.2}) {
     const PairGeometry geometry = PaperGeometry(delta);
-    std::vector<AtRest> balls;
-    if (delta > 0.1) AddBallsWithinTheReach(geometry, balls);
-    AddBallsAtTheEndOfTheReach(geometry, balls);
+    const std::vector<AtRest> balls = BallsAtRest(geometry);
     std::vector<PairState> pairs;
     for (const AtRest& ball : balls) pairs.push_back(ball.pair);
     for (const Engine engine : kEngines) {

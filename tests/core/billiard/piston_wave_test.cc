@@ -5,47 +5,26 @@
 namespace ballpiston {
 namespace {
 
-// A ball on its way, and a piston.
-struct Approach {
-  double phase, ratio, x, ux, length;
-};
-
-std::optional<PistonWave::Collision> FirstCollision(const PistonWave& wave, const Approach& a) {
-  return wave.FirstCollision(a.phase, a.ratio, a.x, a.ux, a.length);
-}
-
-// Starts apart, or touching and moving apart.
-Approach Drawn(const PistonWave& wave, CounterRandom& random) {
-  const double angle = 2 * M_PI * random.Uniform();
-  Approach a = {.phase = 2 * wave.stroke() * random.Uniform(),
-                .ratio = std::pow(10, 4 * random.Uniform() - 2),
-                .x = 0,
-                .ux = std::cos(angle),
-                .length = 0.6 * random.Uniform()};
-  const double piston = wave.Position(a.phase) - wave.left();
-  const double velocity = a.phase < wave.stroke() ? a.ratio : -a.ratio;
-  const bool touches = random.Uniform() < 0.3 && velocity > a.ux;
-  a.x = touches ? piston : piston - 0.5 * random.Uniform();
-  return a;
-}
-
 // For slow balls the piston's phase has no correct digit, but FirstCollision must still have an
-// answer.
+// answer. The ball starts apart from the piston, or touches it and moves apart.
 TEST(PistonWave, FirstCollisionOfASlowBallIsOnItsPath) {
   const PistonWave wave(PaperGeometry(0.01));
   for (uint64_t i = 0; i < 3000; ++i) {
     CounterRandom random(3, 4, i);
-    Approach a = Drawn(wave, random);
-    a.ratio = std::pow(10, 6 + 12 * random.Uniform());
-    const std::optional<PistonWave::Collision> collision = FirstCollision(wave, a);
-    const double farthest = a.x + a.ux * a.length;
-    if (farthest > 1e-3 && a.x > 1e-3) {
+    const double phase = 2 * wave.stroke() * random.Uniform();
+    const double ratio = std::pow(10, 6 + 12 * random.Uniform());
+    const double ux = std::cos(2 * M_PI * random.Uniform()), length = 0.6 * random.Uniform();
+    const bool touches = random.Uniform() < 0.3 && phase < wave.stroke();
+    const double apart = touches ? 0 : 0.5 * random.Uniform();
+    const double x = wave.Position(phase) - wave.left() - apart;
+    const auto collision = wave.FirstCollision(phase, ratio, x, ux, length);
+    if (x + ux * length > 1e-3 && x > 1e-3) {
       ASSERT_TRUE(collision);  // the piston comes past many times
     }
     if (!collision) continue;
     ASSERT_GE(collision->way, 0);
-    ASSERT_LE(collision->way, a.length);
-    ASSERT_GT(a.x + a.ux * collision->way, -1e-15);
+    ASSERT_LE(collision->way, length);
+    ASSERT_GT(x + ux * collision->way, -1e-15);
   }
 }
 
@@ -54,23 +33,23 @@ TEST(PistonWave, CollisionsInSpecialCases) {
   const double stroke = wave.stroke();
   struct Case {
     const char* what;
-    Approach approach;
-    std::optional<double> way;
+    double phase, ratio, x, ux, length;
+    std::optional<double> way = {};
   };
   for (const Case& row :
-       {Case{"a ball that stands", {0.05, 1, -0.01, 0, 0.5}, {}},
-        {"a ball that leaves", {0.05, 1, -0.01, -1, 0.5}, {}},
-        {"a ball that hardly leaves", {0.05, 1, -0.01, -1e-300, 0.5}, {}},
-        {"a ball that hardly comes", {0.05, 1, -0.01, 1e-300, 0.5}, {}},
-        {"a ball that does not come so far", {2 * stroke, 0, -0.01, 1, 0.005}, {}},
-        {"a piston at rest", {0.07, 0, -0.2, 0.5, 1}, 0.27 / 0.5},
+       {Case{"a ball that stands", 0.05, 1, -0.01, 0, 0.5},
+        {"a ball that leaves", 0.05, 1, -0.01, -1, 0.5},
+        {"a ball that hardly leaves", 0.05, 1, -0.01, -1e-300, 0.5},
+        {"a ball that hardly comes", 0.05, 1, -0.01, 1e-300, 0.5},
+        {"a ball that does not come so far", 2 * stroke, 0, -0.01, 1, 0.005},
+        {"a piston at rest", 0.07, 0, -0.2, 0.5, 1, 0.27 / 0.5},
         // The ball touches the piston and moves in the same direction, slower.
-        {"the piston returns", {0.05, 1e18, 0.05, 1, 0.3}, 2 * (stroke - 0.05) / 1e18}}) {
-    const auto collision = FirstCollision(wave, row.approach);
+        {"the piston returns", 0.05, 1e18, 0.05, 1, 0.3, 2 * (stroke - 0.05) / 1e18}}) {
+    const auto collision = wave.FirstCollision(row.phase, row.ratio, row.x, row.ux, row.length);
     ASSERT_EQ(collision.has_value(), row.way.has_value()) << row.what;
     if (!collision) continue;
     EXPECT_NEAR(collision->way / *row.way, 1, 1e-12) << row.what;
-    EXPECT_FALSE(collision->piston_goes_right && row.approach.ratio > 0) << row.what;
+    EXPECT_FALSE(collision->piston_goes_right && row.ratio > 0) << row.what;
   }
 }
 

@@ -87,19 +87,5 @@ TEST(ReferenceFlow, BallsAimedAtTipsStayInTheCell) {
   }
 }
 
-// The ball is at the left end of the piston's stroke, within rounding, so the piston comes no
-// nearer.
-TEST(ReferenceFlow, PistonHitsARestingBallAtItsTurningPoint) {
-  const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-9, 0.1);
-  for (const double beyond : {0.0, 1e-26, 1e-18}) {
-    ReferenceFlow flow(geometry, {.position = {geometry.piston_left() + beyond, 0},
-                                  .direction = {1, 0},
-                                  .ball_speed = 0,
-                                  .piston = 0.5,
-                                  .piston_velocity = -1});
-    EXPECT_EQ(flow.Step().kind, EventKind::kBallPiston) << beyond;
-  }
-}
-
 }  // namespace
 }  // namespace ballpiston

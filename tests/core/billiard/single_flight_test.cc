@@ -188,11 +188,7 @@ void JudgeArc(double unit, const ExactFlight& exact, double rho, int disc, Tally
     ++tally.touches;
   } else {
     ++tally.wrong;
-    tally.a_wrong_one =
-        absl::StrCat("arc ", disc, " instead of ", exact.first, ", which is hit at ",
-                     static_cast<double>(right.length), " and not at ",
-                     static_cast<double>(taken.length), ", impact parameters ",
-                     static_cast<double>(right.impact), " and ", static_cast<double>(taken.impact));
+    tally.a_wrong_one = absl::StrCat("arc ", disc, " instead of ", exact.first);
   }
 }
 

@@ -12,15 +12,10 @@
 namespace ballpiston {
 namespace {
 
-struct Growths {
-  double first = 0, second = 0;
-};
-
 constexpr size_t kCollisions = 4;
 
 struct Followed {
-  std::array<Growths, kCollisions> growths = {};
-  size_t collisions = 0;
+  std::vector<std::array<double, 2>> growths = {};
   uint64_t hits = 0;
 };
 
@@ -45,9 +40,9 @@ class RecordedGrowths : public NumberedOrbits {
     tangents_[index]->Collide(collision);
     const auto growth = tangents_[index]->TakeGrowth();
     Followed& orbit = orbits_[index];
-    orbit.growths[orbit.collisions++] = {growth[0], growth[1]};
+    orbit.growths.push_back({growth[0], growth[1]});
     orbit.hits += collision.ball_wall_hits;
-    return orbit.collisions < kCollisions ? AfterCollision::kGoOn : AfterCollision::kEnd;
+    return orbit.growths.size() < kCollisions ? AfterCollision::kGoOn : AfterCollision::kEnd;
   }
 
   bool FollowsTangents() const override { return true; }
@@ -74,8 +69,9 @@ TEST(TangentPlane, TheReflectionOfAnExchangeIsThatOfSixComponents) {
     ++compared;
     EXPECT_EQ(orbit.hits, expected.hits);
     for (size_t k = 0; k < kCollisions; ++k) {
-      EXPECT_NEAR(orbit.growths[k].first, expected.growths[k].first, 1e-5);
-      EXPECT_NEAR(orbit.growths[k].second, expected.growths[k].second, 1e-5);
+      for (const size_t vector : {0, 1}) {
+        EXPECT_NEAR(orbit.growths[k][vector], expected.growths[k][vector], 1e-5);
+      }
     }
   }
   EXPECT_GT(compared, 50u);

@@ -108,14 +108,6 @@ TEST(MeanFreeTime, PhiIsAccurateForEveryEnergy) {
   }
 }
 
-TEST(MeanFreeTime, ConditionalMeanFreeTimeIsTauOverPhi) {
-  const PairGeometry geometry = PaperGeometry(0.1);
-  const double tau = MeanFreeTimesOf(geometry).ball_piston;
-  for (double ep : {1e-300, 0.125, 0.25, 0.375, 0.5 - 1e-16}) {
-    EXPECT_DOUBLE_EQ(ConditionalMeanFreeTime(geometry, ep) * Phi(ep), tau);
-  }
-}
-
 // A small delta. The ball meets a resting piston if the piston is within delta of the tip, which is
 // delta/(lambda + 2 delta) of the volume. A resting ball waits until the piston has gone to its far
 // wall and back, 2 (lambda + 2 delta) at speed 1. Both hold to first order in delta.
@@ -130,43 +122,22 @@ TEST(MeanFreeTime, AtRestOnlyTheVisitedPartCounts) {
 
 // ---- exchange_rate.h ----
 
-// The canonical density of the energies of a pair, eq. canmeasure.
-double CanonicalDensity(double beta, double eb, double ep) {
-  return beta * std::sqrt(beta / (M_PI * ep)) * std::exp(-beta * (eb + ep));
-}
-
-// A function of (eb, ep) with the total energy E is that of the energies over 2 E, times a power of
-// 2 E.
+// The average over eq. canmeasure of a function of (eb, ep) that is (2 E)^power times `of_pair` at
+// the total energy 1/2, where E = eb + ep. E has the law Gamma(3/2) and is independent of
+// u = sqrt(ep/E), which is uniform. The function has a kink at eb = ep, a power 3/2 or 5/2.
 struct Moment {
-  std::function<double(double ep)> of_pair;
+  double (*of_pair)(double ep);
   double power;
 };
 
-// Integral of the moment over the canonical density, in the total energy E and u = sqrt(ep/E):
-// deb dep = 2 E u dE du. The kink at eb = ep, u = 1/sqrt(2), is a power 3/2 or 5/2. E is
-// integrated to 50/beta in five pieces; the rest is of the order exp(-50).
 double CanonicalAverage(double beta, const Moment& moment) {
-  const auto at_energy = [&](Quad energy) {
-    const double e = static_cast<double>(energy);
-    const auto integrand = [&](Quad q) {
-      const double u = static_cast<double>(q), ep = e * u * u, eb = e * (1 - u * u);
-      return CanonicalDensity(beta, eb, ep) * std::pow(2 * e, moment.power) *
-             moment.of_pair(u * u / 2) * 2 * e * u;
-    };
-    return oracle::IntegrateToRoot(integrand, 0, M_SQRT1_2) +
-           oracle::Integrate(integrand, M_SQRT1_2, 1);
-  };
-  Quad sum = 0;
-  for (int piece = 0; piece < 5; ++piece) {
-    // E = s^2 takes the square root out of the energy's density.
-    const double from = std::sqrt(10 * piece / beta);
-    const double to = std::sqrt(10 * (piece + 1) / beta);
-    sum += oracle::Integrate([&](Quad s) { return 2 * s * at_energy(s * s); }, from, to);
-  }
-  return static_cast<double>(sum);
+  const auto at = [&](Quad u) { return moment.of_pair(static_cast<double>(u * u / 2)); };
+  const Quad of_u = oracle::IntegrateToRoot(at, 0, M_SQRT1_2) + oracle::Integrate(at, M_SQRT1_2, 1);
+  return static_cast<double>(of_u) * std::pow(2 / beta, moment.power) *
+         std::tgamma(1.5 + moment.power) / std::tgamma(1.5);
 }
 
-// Tolerance of all averages: rounding of some 1e4 doubles of one sign, and exp(-50).
+// Tolerance of all averages: rounding of the moments and of the root at the kink.
 constexpr double kCanonicalAverageError = 1e-12;
 
 TEST(ExchangeRate, AveragesEqualIntegralsOfTheMoments) {

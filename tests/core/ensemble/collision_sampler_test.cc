@@ -15,6 +15,7 @@ std::vector<CollisionRecord> AllRecords(
   std::vector<CollisionRecord> all;
   CollisionSampler sampler(point, kind, pause);
   while (const auto records = sampler.NextRecords()) {
+    EXPECT_LT(records->size(), 65'536u);
     all.insert(all.end(), records->begin(), records->end());
   }
   return all;
@@ -57,12 +58,7 @@ TEST(CollisionSampler, CollisionsInEquilibriumAreInTheOrderOfTheirOrbits) {
 TEST(CollisionSampler, CollisionsOfARelaxationHaveTheNumberOfTheirOrbit) {
   const auto point = PointExperiment::Create(
       SpecOf(&kEnergyRelaxation, PaperPoint(0.3), {.samples = 20'000}, Model::kBilliard), 0);
-  CollisionSampler sampler(*point, kEnergyRelaxation, [] { return false; });
-  std::vector<CollisionRecord> all;
-  while (const auto records = sampler.NextRecords()) {
-    EXPECT_LT(records->size(), 65'536u);
-    all.insert(all.end(), records->begin(), records->end());
-  }
+  const std::vector<CollisionRecord> all = AllRecords(*point, kEnergyRelaxation);
   uint64_t orbits = 1;
   for (size_t i = 1; i < all.size(); ++i) {
     const CollisionRecord &record = all[i], &previous = all[i - 1];

@@ -1,12 +1,8 @@
 // What holds for every experiment by every model that samples, and for the answers without samples.
 #include "core/ensemble/point_experiment.h"
 
-#include "core/closed_form/mean_free_time.h"
 #include "core/ensemble/random_stream.h"
 #include "core/experiment/all_experiments.h"
-#include "core/gas/gas_exchange_rate.h"
-#include "core/gas/gas_geometry.h"
-#include "core/markov/relaxation_spectrum.h"
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
@@ -36,10 +32,6 @@ std::vector<EnsembleSpec> OneOfEach() {
     }
   }
   return specs;
-}
-
-EnsembleSpec RelaxationBy(Model model) {
-  return SpecOf(&kEnergyRelaxation, PaperPoint(0.2), {.samples = 1000}, model, 42);
 }
 
 BlockResult Folded(const EnsembleSpec& spec, size_t index = 0) {
@@ -181,89 +173,46 @@ TEST_P(EachExperiment, TheNamedEstimateIsTheFirst) {
   }
 }
 
-TEST_P(EachExperiment, EnergiesAtBothEndsAreAnswered) {
-  if (spec_.grid[kEpsilon].empty()) return;
-  for (const double epsilon : {0.0, 1e-300, 0.25, 0.5 - 0x1p-54, 0.5}) {
-    spec_.grid[kEpsilon] = {epsilon};
-    const PointSummary summary = RunPoint(spec_);
-    EXPECT_EQ(summary.samples, 1000u) << epsilon;
-    EXPECT_TRUE(std::isfinite(summary.estimates.front().value)) << epsilon;
-  }
-}
-
-// At the second point of OneOfEach().
-double FirstClosedForm(const ExperimentKind* experiment) {
-  if (experiment == &kGasEquilibrium) {
-    return GasExchangeRate(
-        GasGeometry::Create(kPaperRho, 0.15, {.columns = 2}, GasEnds::kPeriodic).value(), 2);
-  }
-  const PairGeometry pair = PaperGeometry(0.3);
-  return experiment == &kEquilibrium ? MeanFreeTimesOf(pair).ball_piston
-                                     : ConditionalMeanFreeTime(pair, 0.125);
-}
-
+// The estimates have the names of the sampled ones, from which they differ by a z-score of 5 at
+// most.
 TEST_P(EachExperiment, ClosedFormsAnswerWithoutABlock) {
   if (!AimOf(spec_).HasClosedForm()) return;
+  const PointSummary measured = RunPoint(spec_);
   spec_.model = Model::kClosedForm;
   for (const Target& target : {Target{}, Target{.tolerance = 1e-12}, spec_.target}) {
     spec_.target = target;
     ASSERT_TRUE(Violations(spec_).empty());
-    const auto point = PointExperiment::Create(spec_, 1);
+    const auto point = PointExperiment::Create(spec_, 0);
     EXPECT_EQ(point->plan().samples(), 0u);
     EXPECT_TRUE(PointFold(*point).finished());
     const PointSummary summary = point->Summarize({});
     EXPECT_EQ(summary.samples, 0u);
     EXPECT_EQ(summary.estimates.front().name, point->FirstEstimate({}).name);
-    for (const Estimate& estimate : summary.estimates) {
-      EXPECT_EQ(estimate.value, estimate.exact);
-      const bool is_given = estimate.name.starts_with("temperature");
-      EXPECT_EQ(*estimate.standard_error > 0, !is_given) << estimate.name;
-      EXPECT_LT(*estimate.standard_error, 1e-11 * estimate.value);
+    for (size_t i = 0; i < summary.estimates.size(); ++i) {
+      const Estimate &exact = summary.estimates[i], &sampled = measured.estimates[i];
+      EXPECT_EQ(exact.name, sampled.name);
+      EXPECT_EQ(exact.value, exact.exact);
+      EXPECT_EQ(exact.value, sampled.exact);
+      EXPECT_LT(std::fabs(*sampled.ZScore()), 5) << exact.name;
+      const bool is_given = exact.name.starts_with("temperature");
+      EXPECT_EQ(*exact.standard_error > 0, !is_given) << exact.name;
+      EXPECT_LT(*exact.standard_error, 1e-11 * exact.value);
     }
-    EXPECT_EQ(summary.estimates.front().value, FirstClosedForm(spec_.experiment));
   }
 }
 
-// Closed form, sampling and their names belong together: a z-score of 5 for 1000 samples.
-TEST_P(EachExperiment, ClosedFormsAreNamedAsTheEstimatesTheyStandFor) {
-  if (!AimOf(spec_).HasClosedForm()) return;
-  const PointSummary measured = RunPoint(spec_);
-  spec_.model = Model::kClosedForm;
-  const PointSummary exact = PointExperiment::Create(spec_, 0)->Summarize({});
-  for (size_t i = 0; i < exact.estimates.size(); ++i) {
-    EXPECT_EQ(exact.estimates[i].name, measured.estimates[i].name);
-    EXPECT_EQ(exact.estimates[i].value, measured.estimates[i].exact);
-    EXPECT_LT(std::fabs(*measured.estimates[i].ZScore()), 5);
-  }
-}
-
-TEST(PointExperiment, SpectrumAnswersWithoutABlock) {
-  const double unit = MeanFreeTimesOf(PaperGeometry(0.2)).ball_piston / 4;
-  const auto point = PointExperiment::Create(RelaxationBy(Model::kSpectrum), 0);
-  EXPECT_EQ(point->plan().samples(), 0u);
-  const PointSummary summary = point->Summarize({});
-  ASSERT_GE(summary.estimates.size(), 2u);
-  EXPECT_EQ(summary.estimates[0].name, "relaxation_time");
-  EXPECT_NEAR(summary.estimates[0].value / unit, 2.165550673728, 1e-11);
-  EXPECT_LT(*summary.estimates[0].standard_error / unit, 1e-10);
-  EXPECT_EQ(summary.estimates[1].name, "spectral_gap");
-  EXPECT_EQ(summary.estimates[1].value, RelaxationSpectrum::Get().Gap().value);
-  ASSERT_EQ(summary.curves.size(), 1u);
-  EXPECT_EQ(summary.curves[0].name, "energy_autocorrelation");
-  EXPECT_NEAR(summary.curves[0].points.front().value, 1, 1e-13);
-}
-
+// The numbers are the same as if the specification had named the model.
 TEST(PointExperiment, AnswerDecidesTheModel) {
-  const Answer answer = {.model = Model::kSpectrum, .reason = "chosen", .model_error = 0.01};
-  const auto point = PointExperiment::Create(RelaxationBy(Model::kAuto), 0, answer);
-  EXPECT_EQ(point->answer().model, Model::kSpectrum);
-  EXPECT_EQ(point->answer().reason, "chosen");
-  EXPECT_EQ(point->answer().model_error, 0.01);
-  EXPECT_EQ(point->plan().samples(), 0u);
-  // The numbers are the same as if the specification had named the model.
-  const auto chosen =
-      PointExperiment::Create(RelaxationBy(Model::kAuto), 0, {.model = Model::kMarkov});
-  EXPECT_EQ(FoldPoint(*chosen), Folded(RelaxationBy(Model::kMarkov)));
+  EnsembleSpec spec = SpecOf(&kEnergyRelaxation, PaperPoint(0.2), {.samples = 1000});
+  const auto spectrum = PointExperiment::Create(
+      spec, 0, {.model = Model::kSpectrum, .reason = "chosen", .model_error = 0.01});
+  EXPECT_EQ(spectrum->answer().model, Model::kSpectrum);
+  EXPECT_EQ(spectrum->answer().reason, "chosen");
+  EXPECT_EQ(spectrum->answer().model_error, 0.01);
+  EXPECT_EQ(spectrum->plan().samples(), 0u);
+  const auto walks = PointExperiment::Create(spec, 0, {.model = Model::kMarkov});
+  spec.model = Model::kMarkov;
+  EXPECT_EQ(FoldPoint(*walks), Folded(spec));
 }
 
 // A correlation needs two exchanges of one orbit, also if collisions are very rare.
@@ -277,31 +226,14 @@ TEST(PointExperiment, BlocksHoldWholeOrbitsOfExchanges) {
   }
 }
 
-TEST(PointExperiment, CollisionsAreSharedByTheOrbitsThatTakeThem) {
-  const PointParameters point = PaperPoint(0.2);  // orbits of 40 collisions
-  for (const auto& [target, samples] : {std::pair<Target, int64_t>({.collisions = 1000}, 25),
-                                        {{.collisions = 1001}, 26},
-                                        {{.collisions = 1}, 1},
-                                        {{.samples = 1000}, 1000},
-                                        {{}, kDefaultSamples},
-                                        {{.tolerance = 0.01}, kMaxSamples}}) {
-    const EnsembleSpec spec = SpecOf(&kEnergyRelaxation, point, target);
-    EXPECT_EQ(SamplesAskedFor(target, ForecastOf(spec, point)), static_cast<uint64_t>(samples));
-  }
-}
-
 // ---- random_stream.h ----
 
-uint64_t StreamAt(const ExperimentKind& experiment, const PointParameters& point,
-                  Model model = Model::kBilliard) {
-  return PointStream({.experiment = &experiment, .model = model}, point);
-}
-
 TEST(PointStream, TheJumpProcessHasItsOwnRandomNumbers) {
-  const PointParameters point = {{kRho, 0.6}, {kDelta, 0.1}};
-  const uint64_t billiard = StreamAt(kEnergyRelaxation, point);
-  EXPECT_NE(StreamAt(kEnergyRelaxation, point, Model::kMarkov), billiard);
-  EXPECT_EQ(StreamAt(kEnergyRelaxation, point, Model::kBilliardReference), billiard);
+  const auto stream = [](Model model) {
+    return PointStream({.experiment = &kEnergyRelaxation, .model = model}, PaperPoint(0.1));
+  };
+  EXPECT_NE(stream(Model::kMarkov), stream(Model::kBilliard));
+  EXPECT_EQ(stream(Model::kBilliardReference), stream(Model::kBilliard));
 }
 
 }  // namespace

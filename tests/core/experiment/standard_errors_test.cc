@@ -1,6 +1,5 @@
 // Which estimates have a standard error, and what stands in its place.
 #include "core/closed_form/ingoing_law.h"
-#include "core/experiment/expected_returns.h"
 #include "core/experiment/returns.h"
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
@@ -36,6 +35,16 @@ TEST(StandardErrors, NeedANumberOfSamples) {
            {"energy-relaxation delta=0.2 model=billiard samples=400", "relaxation_time", true},
            {"energy-relaxation delta=0.2 model=billiard samples=399", "relaxation_time", false,
             "needs about 400 samples"},
+           // Orbits that do not meet keep their energies, and have no scatter.
+           {"energy-relaxation rho=0.6 delta=0.0194 epsilon=0.5 model=billiard samples=64",
+            "decay_integral", false,
+            "relaxation_time has no standard error: an error needs about "},
+           {"energy-relaxation delta=0.0125 epsilon=0 model=billiard samples=64", "relaxation_time",
+            false, "relaxation_time has no standard error: an error needs about "},
+           {"energy-relaxation rho=0.707 delta=1e-4 epsilon=0 model=billiard samples=64",
+            "decay_integral", false, "an error needs about "},
+           {"energy-relaxation rho=0.707 delta=1e-4 epsilon=0 model=markov samples=64",
+            "decay_integral", true},
            {"markov-property delta=0.2 model=markov collisions=1600", "memory_correlation", true},
            {"markov-property delta=0.2 model=markov collisions=1568", "memory_correlation", false,
             "needs about 1600 samples"},
@@ -102,50 +111,6 @@ TEST(StandardErrors, OfReturnsToASlowPistonNeedLongReturns) {
   EXPECT_TRUE(HasError("mean_cos_alpha", question + "1"));
 }
 
-// A body at rest that is out of reach of the other keeps its energy, so that orbits that do not
-// meet have no scatter.
-TEST(StandardErrors, OfARelaxationNeedOrbitsThatMeet) {
-  for (const std::string start : {"rho=0.6 delta=0.0194 epsilon=0.5", "delta=0.0125 epsilon=0",
-                                  "rho=0.707 delta=1e-4 epsilon=0"}) {
-    const std::string question = "energy-relaxation " + start;
-    const PointSummary summary = Answered(question + " samples=64 model=billiard");
-    for (const Estimate& estimate : summary.estimates) EXPECT_FALSE(estimate.standard_error);
-    EXPECT_FALSE(summary.curves[0].points.back().standard_error);
-    EXPECT_THAT(summary.remarks,
-                Contains(HasSubstr(" has no standard error: an error needs about ")));
-    const auto point =
-        PointExperiment::Create(Asked(question + " tolerance=0.03 model=billiard"), 0);
-    EXPECT_FALSE(point->ReachesTolerance(RunBlock(*point, point->plan().BlockAt(0, 0))));
-    EXPECT_TRUE(HasError("decay_integral", question + " samples=64 model=markov"));
-  }
-}
-
-// The measured share of orbits that meet: whose energy has left its bin at the end. One in 61 of
-// those is back in it. 2000 orbits.
-TEST(StandardErrors, ShareThatMeetsIsAboutTheMeasuredOne) {
-  for (const auto& [delta, epsilon] : {std::pair{0.1, 0.0},
-                                       {0.02, 0.0},
-                                       {0.1, 0.5},
-                                       {0.2, 0.5},
-                                       {0.02, 1e-5},
-                                       {0.02, 1e-3},
-                                       {0.1, 0.02},
-                                       {0.1, 0.4999}}) {
-    const PointSummary summary = Answered(absl::StrCat(
-        "energy-relaxation model=billiard samples=2000 delta=", delta, " epsilon=", epsilon));
-    const Histogram& at_end = summary.histograms.back().histogram;
-    Histogram start = Histogram::OfBins(at_end.lower, at_end.upper, at_end.counts.size());
-    start.Add(epsilon);
-    const auto bin =
-        static_cast<size_t>(std::ranges::max_element(start.counts) - start.counts.begin());
-    const double measured = 1 - static_cast<double>(at_end.counts[bin]) / 2000;
-    const double window = *summary.histograms.back().time;
-    const double share = ShareThatMeets(PaperGeometry(delta), epsilon, window);
-    EXPECT_GT(share / measured, 0.7) << delta << " " << epsilon;
-    EXPECT_LT(share / measured, 1.6) << delta << " " << epsilon;
-  }
-}
-
 // In a small cell most meetings of a slow ball are two collisions at once, and the second one
 // undoes the first. Measured mean squares of z over 20 seeds: up to 2. Errors without the second
 // collision give up to 70.
@@ -170,16 +135,6 @@ TEST(StandardErrors, OfARelaxationsCurveAreAtMostTwiceTooSmall) {
       for (size_t i = 1; i < errors.size(); ++i) EXPECT_LE(squares[i], 4 * errors[i]) << i;
     }
   }
-}
-
-// A resting ball next to the tip: all returns take the same time but for 1e-13 of it.
-TEST(StandardErrors, AreAtLeastTheRoundingOfTheMean) {
-  const Estimate time = Answered(
-                            "conditional-mean-free-time delta=1e-13 epsilon=0.5 samples=20000 "
-                            "model=billiard_reference")
-                            .estimates[0];
-  EXPECT_GE(*time.standard_error, 2e-14 * time.value);
-  EXPECT_LT(std::fabs(*time.ZScore()), 2);
 }
 
 TEST(StandardErrors, ValueIsMissingWhereNothingWasMeasured) {

@@ -91,8 +91,8 @@ TEST(GasExchangeRate, DomainCoversEveryGeometry) {
 }
 
 // In the canonical ensemble the energy E of k pairs of velocity components, T each, has the law
-// Gamma(k): the mean of sqrt(E) is sqrt(T) Gamma(k + 1/2)/Gamma(k). Rates and standard errors of an
-// independent program, tests/data/gas.csv; four of them: 6e-5 false alarms each.
+// Gamma(k): the mean of sqrt(E) is sqrt(T) Gamma(k + 1/2)/Gamma(k). Rates, and four
+// standard errors of an independent program: 6e-5 false alarms each.
 TEST(GasExchangeRate, AgreesWithAnIndependentProgram) {
   const auto at_fixed_energy = [](const GasGeometry& gas) {
     const double k = static_cast<double>(gas.balls()) + static_cast<double>(gas.pistons()) / 2;

@@ -1,5 +1,6 @@
 #include "core/gas/gas_geometry.h"
 
+#include "core/ensemble/parameter.h"
 #include "core/gas/gas_shape.h"
 #include "tests/core/gas/gases.h"
 #include "tests/core/preamble.h"
@@ -123,6 +124,7 @@ TEST(GasShape, TextAndCodeDetermineTheShape) {
     EXPECT_EQ(ShapeOf(CodeOf(shape)), shape) << text;
     EXPECT_EQ(CodeOf(shape), std::floor(CodeOf(shape)));
     EXPECT_LT(CodeOf(shape), 0x1p41);
+    EXPECT_OK(kCells.Validate(CodeOf(shape))) << text;
     EXPECT_EQ(shape.directions(), shape.is_lattice ? 4 : 2);
     if (!shape.is_lattice) {
       EXPECT_EQ(CodeOf(shape), static_cast<double>(shape.columns));

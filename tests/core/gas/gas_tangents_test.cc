@@ -8,8 +8,8 @@ namespace {
 
 using Vector = GasTangents::Vector;
 
-GasState StateWith(const Vector& components, GasState state) {
-  auto at = components.begin();
+GasState StateWith(const Eigen::VectorXd& components, GasState state) {
+  const double* at = components.data();
   for (GasBall& ball : state.balls) {
     ball.position = {at[0], at[1]};
     const Eigen::Vector2d velocity(at[2], at[3]);
@@ -24,20 +24,10 @@ GasState StateWith(const Vector& components, GasState state) {
   return state;
 }
 
-Vector Sum(const Vector& a, double factor, const Vector& b) {
-  Vector sum = a;
-  for (size_t i = 0; i < sum.size(); ++i) sum[i] += factor * b[i];
-  return sum;
-}
-
-double Product(const Vector& a, const Vector& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
 struct OrbitEnd {
   std::vector<std::tuple<EventKind, int64_t, int64_t>> events;
   size_t exchanges = 0;
-  Vector components;
+  Eigen::VectorXd components;
 };
 
 OrbitEnd OrbitTo(double time, const GasGeometry& geometry, const GasState& start) {
@@ -65,17 +55,16 @@ Vector GrowthTo(double time, const GasGeometry& geometry, const GasState& start,
 
 // The difference of two orbits that start apart by twice `apart` along `vector`, over this
 // distance. Empty if their events differ.
-Vector DifferenceAlong(const Vector& vector, double time, const GasGeometry& geometry,
-                       const GasState& start) {
+Eigen::VectorXd DifferenceAlong(const Vector& vector, double time, const GasGeometry& geometry,
+                                const GasState& start) {
   constexpr double kApart = 1e-7;
+  const Eigen::Map<const Eigen::VectorXd> along(vector.data(), std::ssize(vector));
   const auto orbit = [&](double distance) {
-    return OrbitTo(time, geometry, StateWith(Sum(ComponentsOf(start), distance, vector), start));
+    return OrbitTo(time, geometry, StateWith(ComponentsOf(start) + distance * along, start));
   };
   const OrbitEnd forward = orbit(kApart), back = orbit(-kApart);
   if (forward.events != back.events) return {};
-  Vector difference = Sum(forward.components, -1, back.components);
-  for (double& component : difference) component /= 2 * kApart;
-  return difference;
+  return (forward.components - back.components) / (2 * kApart);
 }
 
 // Growth up to exp(6). The differences have a rounding of 1e-16 exp(6)/1e-7 and a third order of
@@ -89,13 +78,12 @@ TEST(GasTangents, NearbyGasesDivergeAsPredicted) {
       const std::vector<Vector> across = VelocitiesAcross(start);
       const double time = 1.2;
       const Vector growth = GrowthTo(time, geometry, start, {across[0], across[1]});
-      const Vector a = DifferenceAlong(across[0], time, geometry, start);
-      const Vector b = DifferenceAlong(across[1], time, geometry, start);
-      if (growth[0] > 6 || growth[1] > 6 || a.empty() || b.empty()) continue;
-      const double aa = Product(a, a), ab = Product(a, b);
+      const Eigen::VectorXd a = DifferenceAlong(across[0], time, geometry, start);
+      const Eigen::VectorXd b = DifferenceAlong(across[1], time, geometry, start);
+      if (growth[0] > 6 || growth[1] > 6 || a.size() == 0 || b.size() == 0) continue;
+      const double aa = a.dot(a), ab = a.dot(b);
       EXPECT_NEAR(growth[0], std::log(aa) / 2, 1e-4) << shape << " " << sample;
-      EXPECT_NEAR(growth[1], std::log(Product(b, b) - ab * ab / aa) / 2, 1e-4)
-          << shape << " " << sample;
+      EXPECT_NEAR(growth[1], std::log(b.dot(b) - ab * ab / aa) / 2, 1e-4) << shape << " " << sample;
       exchanges += OrbitTo(time, geometry, start).exchanges;
       ++compared;
     }

@@ -37,18 +37,17 @@ inline GasState AtRest(const GasGeometry& geometry) {
 }
 
 // All positions and velocities, in the order of a tangent vector's components.
-inline std::vector<double> ComponentsOf(const GasState& state) {
+inline Eigen::VectorXd ComponentsOf(const GasState& state) {
   std::vector<double> components;
   for (const GasBall& ball : state.balls) {
     const Eigen::Vector2d velocity = ball.speed * ball.direction;
-    for (const double x : {ball.position.x(), ball.position.y(), velocity.x(), velocity.y()}) {
-      components.push_back(x);
-    }
+    components.insert(components.end(),
+                      {ball.position.x(), ball.position.y(), velocity.x(), velocity.y()});
   }
   for (const GasPiston& piston : state.pistons) {
     components.insert(components.end(), {piston.offset, piston.velocity});
   }
-  return components;
+  return Eigen::Map<Eigen::VectorXd>(components.data(), std::ssize(components));
 }
 
 // The distance from the ball to the piston that it sees in this direction; negative if the ball is

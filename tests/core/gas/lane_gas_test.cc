@@ -151,16 +151,6 @@ TEST(LaneGas, AnEscapedBallStopsAndCountsOnce) {
   EXPECT_EQ(meter.Energy(1), energy);
 }
 
-// Here a cell is as small as the rounding of places, and balls escape soon.
-TEST(LaneGas, AGasThatLosesItsBallsEnds) {
-  const GasGeometry gas = GasOf(0.7071067811865475, 4.4e-17, "3", GasEnds::kReservoirs);
-  const auto gases = InLanes(gas, GasInEquilibrium(gas, 1, 45, 0));
-  int calls = 0;
-  while (!gases->AdvanceToward(100'000 * MeanFlight(gas.pair()))) ASSERT_LE(++calls, 100);
-  EXPECT_GT(gases->meters().front().escapes(), 0u);
-  EXPECT_LE(gases->meters().front().escapes(), 3u);
-}
-
 // A gas at rest except for one piston, which comes to a resting ball within its reach.
 TEST(LaneGas, ThePistonMeetsABallAtRestAtItsPlace) {
   const GasGeometry gas = GasOf(kPaperRho, 0.15, "3");

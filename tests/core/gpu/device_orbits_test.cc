@@ -65,9 +65,6 @@ TEST(OrbitsOnDevice, HaveTheBitsOfTheLanes) {
     }
   }
   for (const size_t lanes : {1u, 7u, 500u}) ExpectBitsOfTheLanes({.lanes = lanes});
-}
-
-TEST(OrbitsOnDevice, GoOnAfterAFalseAlarm) {
   for (const double delta : {0.05, 0.2}) {
     ExpectBitsOfTheLanes({.geometry = PaperGeometry(delta), .faults = {.false_alarm = 1}});
   }

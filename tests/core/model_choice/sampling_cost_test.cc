@@ -12,83 +12,62 @@ namespace {
 // ---- errors, which are measured ----
 
 struct Case {
-  std::string question;
+  const char* questions;
   // Bound of stated/measured: above the measured ratio by five standard errors of a measured error,
   // which are up to 40 % with 80 orbits. So a false alarm has a probability below 1e-5.
   double factor;
 };
 
-std::vector<Case> CasesOfErrors() {
-  std::vector<Case> cases;
-  for (const char* delta : {"0.05", "0.15", "0.32"}) {
-    cases.push_back({absl::StrCat("equilibrium collisions=10000 delta=", delta), 1.2});
-  }
-  for (const char* returns : {"conditional-mean-free-time", "first-hit"}) {
-    for (const auto& [delta, factor] : {std::pair(0.05, 1.15), {0.2, 1.7}}) {
-      for (const char* epsilon : {"0.125", "0.3", "0.45"}) {
-        cases.push_back(
-            {absl::StrCat(returns, " samples=10000 delta=", delta, " epsilon=", epsilon), factor});
-      }
-    }
-  }
-  for (const char* place : {"rho=0.501 delta=0.4", "rho=0.53 delta=0.3", "rho=0.53 delta=0.02",
-                            "rho=0.7 delta=0.01", "rho=0.706 delta=0.0014"}) {
-    for (const AimedEstimate& aim : kLyapunov.aims) {
-      cases.push_back(
-          {absl::StrCat("lyapunov collisions=5000 model=billiard ", place, " estimate=", aim.name),
-           2.2});
-    }
-  }
-  for (const char* gas :
-       {"cells=1 rho=0.51 delta=0.2", "cells=4 delta=0.2", "cells=2x2 rho=0.65 delta=0.04"}) {
-    for (const AimedEstimate& aim : kGasLyapunov.aims) {
-      cases.push_back(
-          {absl::StrCat("gas-lyapunov samples=100 model=billiard ", gas, " estimate=", aim.name),
-           1.6});
-    }
-  }
-  // Predicted is the error of the jump process. The billiard at delta = 0.25, epsilon = 0.05 has
-  // 1.95 times that error, give or take 0.1 from seed to seed.
-  for (const auto& [walk, factor] : {std::pair("model=billiard delta=0.1", 1.25),
-                                     {"model=billiard delta=0.25", 2.5},
-                                     {"model=markov delta=0.1", 1.4},
-                                     {"model=markov delta=0.25", 1.4}}) {
-    for (const char* start : {"", " epsilon=0.01", " epsilon=0.05", " epsilon=0.4"}) {
-      cases.push_back({absl::StrCat("energy-relaxation samples=10000 ", walk, start), factor});
-    }
-  }
-  // Where the piston or the ball rests or is slow, few orbits meet. At a small delta too few meet a
-  // body at rest to give an error.
-  for (const auto& [rho, share] :
-       {std::pair(0.51, 0.999), {0.51, 0.1}, {0.66, 0.999}, {0.66, 0.1}}) {
-    for (const char* epsilon : {"0", "1e-4", "0.4999", "0.5"}) {
-      const bool rests = std::string(epsilon) == "0.5" || (std::string(epsilon) == "0");
-      if (rests && share < 0.5 && (rho > 0.6 || std::string(epsilon) == "0.5")) continue;
-      cases.push_back({absl::StrCat("energy-relaxation samples=2048 model=billiard rho=", rho,
-                                    " delta=", share * PairDeltaBound(rho), " epsilon=", epsilon),
-                       std::string(epsilon) == "0.4999" ? 3.5 : 1.6});
-    }
+constexpr Case kCasesOfErrors[] = {
+    {"equilibrium collisions=10000 delta={0.05|0.15|0.32}", 1.2},
+    {"{conditional-mean-free-time|first-hit} samples=10000 delta=0.05 epsilon={0.125|0.3|0.45}",
+     1.15},
+    {"{conditional-mean-free-time|first-hit} samples=10000 delta=0.2 epsilon={0.125|0.3|0.45}",
+     1.7},
+    {"lyapunov collisions=5000 model=billiard {rho=0.501 delta=0.4|rho=0.53 delta=0.3|"
+     "rho=0.53 delta=0.02|rho=0.7 delta=0.01|rho=0.706 delta=0.0014} "
+     "estimate={lyapunov_1|lyapunov_2|entropy|lyapunov_1_per_collision|lyapunov_2_per_collision}",
+     2.2},
+    {"gas-lyapunov samples=100 model=billiard {cells=1 rho=0.51 delta=0.2|cells=4 delta=0.2|"
+     "cells=2x2 rho=0.65 delta=0.04} estimate={lyapunov_1|entropy_per_ball}",
+     1.6},
+    // Predicted is the error of the jump process. The billiard at delta = 0.25, epsilon = 0.05 has
+    // 1.95 times that error, give or take 0.1 from seed to seed.
+    {"energy-relaxation samples=10000 model=billiard delta=0.1{| epsilon=0.01| epsilon=0.05| "
+     "epsilon=0.4}",
+     1.25},
+    {"energy-relaxation samples=10000 model=billiard delta=0.25{| epsilon=0.01| epsilon=0.05| "
+     "epsilon=0.4}",
+     2.5},
+    {"energy-relaxation samples=10000 model=markov delta={0.1|0.25}{| epsilon=0.01| epsilon=0.05| "
+     "epsilon=0.4}",
+     1.4},
+    // Where the piston or the ball rests or is slow, few orbits meet. At a small delta too few meet
+    // a body at rest to give an error. delta is 0.999 or 0.1 of its bound.
+    {"energy-relaxation samples=2048 model=billiard {rho=0.51 delta=0.3991|rho=0.66 delta=0.0691} "
+     "epsilon={0|1e-4|0.5}",
+     1.6},
+    {"energy-relaxation samples=2048 model=billiard rho=0.51 delta=0.03995 epsilon={0|1e-4}", 1.6},
+    {"energy-relaxation samples=2048 model=billiard rho=0.66 delta=0.00692 epsilon=1e-4", 1.6},
+    {"energy-relaxation samples=2048 model=billiard {rho=0.51 delta=0.3991|rho=0.51 delta=0.03995|"
+     "rho=0.66 delta=0.0691|rho=0.66 delta=0.00692} epsilon=0.4999",
+     3.5},
     // The return time to a ball at rest depends only on the ball's place, which is known.
-    cases.push_back(
-        {absl::StrCat("conditional-mean-free-time samples=4096 model=billiard rho=", rho,
-                      " delta=", share * share * PairDeltaBound(rho), " epsilon=0.5"),
-         1.3});
-  }
-  // A slow piston at the cold end passes the current in few portions.
-  for (const char* cold : {"0.5", "0.01", "1e-4", "1e-6"}) {
-    cases.push_back({absl::StrCat("gas-conduction samples=256 model=billiard_reference cells=1 "
-                                  "hot=1 cold=",
-                                  cold),
-                     2});
-  }
-  return cases;
-}
+    {"conditional-mean-free-time samples=4096 model=billiard epsilon=0.5 {rho=0.51 delta=0.3987|"
+     "rho=0.51 delta=0.003995|rho=0.66 delta=0.06905|rho=0.66 delta=0.000692}",
+     1.3},
+    // A slow piston at the cold end passes the current in few portions.
+    {"gas-conduction samples=256 model=billiard_reference cells=1 hot=1 cold={0.5|0.01|1e-4|1e-6}",
+     2},
+};
 
 TEST(SamplingCost, PredictedErrorsAreThoseMeasured) {
-  for (const Case& row : CasesOfErrors()) {
-    const double ratio = StatedOverMeasured(Asked(row.question));
-    EXPECT_LT(ratio, row.factor) << row.question;
-    EXPECT_GT(ratio, 1 / row.factor) << row.question;
+  for (const auto& [questions, factor] : kCasesOfErrors) {
+    for (const std::string& question : QuestionsOf(questions)) {
+      const double ratio = StatedOverMeasured(Asked(question));
+      EXPECT_LT(ratio, factor) << question;
+      EXPECT_GT(ratio, 1 / factor) << question;
+    }
   }
   const EnsembleSpec infinite = Asked("conditional-mean-free-time epsilon=0");
   EXPECT_TRUE(std::isinf(ScatterOf(infinite, PointAt(infinite, 0)).error));

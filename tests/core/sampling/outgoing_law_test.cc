@@ -45,18 +45,6 @@ class LawByMidpoints {
   std::vector<double> sums_ = {0};
 };
 
-TEST(StepEnvelope, StepsOfHeightZeroAreNeverDrawn) {
-  const auto is_inside = [](double a, double b) {
-    return (a >= 0.25 && b <= 0.5) || (a >= 0.625 && b <= 0.75);
-  };
-  const StepEnvelope steps(0, 1, [&](double a, double b) { return is_inside(a, b) ? 1.0 : 0.0; });
-  CounterRandom random(3, 0, 0);
-  for (int i = 0; i < 10'000; ++i) {
-    const double x = steps.Draw(random, [](double) { return 1.0; });
-    ASSERT_TRUE(is_inside(x, x)) << x;
-  }
-}
-
 class OutgoingLawOf : public testing::TestWithParam<std::tuple<double, double>> {};
 
 // False alarms: 2.7e-6 for each law, and 6e-7 for its symmetry.

@@ -82,18 +82,19 @@ TEST(KlDivergence, NoiseFloorIsTheMeanUnderTheExactLaw) {
   EXPECT_NEAR(NoiseOf(10, {1}).noise_floor, 0, 1e-16);
 }
 
-// Compares samples that are drawn from one law with another.
-KlDivergence OfSample(CounterRandom& random, const std::vector<double>& drawn,
-                      const std::vector<double>& law, int samples) {
-  std::vector<double> sums(drawn.size());
-  std::partial_sum(drawn.begin(), drawn.end(), sums.begin());
-  std::vector<uint64_t> counts(law.size());
-  for (int n = 0; n < samples; ++n) {
-    const auto cell = std::upper_bound(sums.begin(), sums.end() - 1, random.Uniform());
-    ++counts[static_cast<size_t>(cell - sums.begin())];
+class Draw {  // of a cell
+ public:
+  explicit Draw(const std::vector<double>& law) : sums_(law.size()) {
+    std::partial_sum(law.begin(), law.end(), sums_.begin());
   }
-  return RelativeEntropy(counts, law);
-}
+  size_t operator()(CounterRandom& random) const {
+    const auto cell = std::upper_bound(sums_.begin(), sums_.end() - 1, random.Uniform());
+    return static_cast<size_t>(cell - sums_.begin());
+  }
+
+ private:
+  std::vector<double> sums_;
+};
 
 std::vector<double> UniformLaw(size_t cells) {
   return std::vector<double>(cells, 1 / static_cast<double>(cells));
@@ -130,20 +131,20 @@ TEST(KlDivergence, ErrorsAreTheScatterOfRepetitions) {
   };
   for (const Case& row : {Case{UniformLaw(20), UniformLaw(20), 2000, 8000, 5},
                           {UniformLaw(120), UniformLaw(120), 3000, 400, 5},
-                          {UniformLaw(100), UniformLaw(100), 10'000, 400, 5},
                           {SteepLaw(1000), SteepLaw(1000), 16, 400, 7},
-                          {SteepLaw(1000), SteepLaw(1000), 256, 400, 5},
                           {SteepLaw(1000), SteepLaw(1000), 4096, 400, 5},
-                          {SteepLaw(1000), SteepLaw(1000), 65'536, 100, 5},
                           {TiltedLaw(100, 0.3), UniformLaw(100), 10'000, 400, 7},
                           {TiltedLaw(100, 0.9), UniformLaw(100), 300, 400, 7},
                           {PeakedLaw(1000), UniformLaw(1000), 256, 400, 7}}) {
     SCOPED_TRACE(testing::Message() << row.samples << " samples in " << row.law.size() << " cells");
     CounterRandom random(8, 0, 0);
+    const Draw draw(row.drawn);
     Moments values, errors;
     KlDivergence last;
     for (int i = 0; i < row.repetitions; ++i) {
-      last = OfSample(random, row.drawn, row.law, row.samples);
+      std::vector<uint64_t> counts(row.law.size());
+      for (int n = 0; n < row.samples; ++n) ++counts[draw(random)];
+      last = RelativeEntropy(counts, row.law);
       values.Add(last.value);
       errors.Add(last.standard_error);
     }
@@ -156,22 +157,14 @@ TEST(KlDivergence, ErrorsAreTheScatterOfRepetitions) {
   }
 }
 
-// A number with the density 1 + tilt (2 x - 1) on [0, 1]. It solves x + tilt (x^2 - x) = u, where u
-// is uniform.
-double Tilted(double tilt, double u) {
-  const double b = 1 - tilt;
-  return tilt == 0 ? u : (std::sqrt(b * b + 4 * tilt * u) - b) / (2 * tilt);
-}
-
-// Each sample counts `repeats` times. The density is 1 + tilt (2 x - 1) in each of two rows.
+// Each sample counts `repeats` times. The law is tilted in each of two rows.
 KlDivergence OfRepeatedSamples(CounterRandom& random, double tilt, int samples, uint64_t repeats) {
   constexpr size_t kCells = 20;
+  const Draw draw(TiltedLaw(kCells, tilt));
   std::vector<Histogram> groups(kGroups, Histogram::OfBins(0, 1, 2 * kCells));
   for (int i = 0; i < samples; ++i) {
-    const double x = Tilted(tilt, random.Uniform());
     const size_t row = random.Uniform() < 0.3 ? 0 : kCells;
-    groups[static_cast<size_t>(i) % kGroups].counts[row + static_cast<size_t>(x * kCells)] +=
-        repeats;
+    groups[static_cast<size_t>(i) % kGroups].counts[row + draw(random)] += repeats;
   }
   return DivergenceWithinRows(groups, 2);
 }
