@@ -22,7 +22,7 @@ namespace ballpiston::client {
 
 inline constexpr int64_t kMaxListLength = 100'000;
 
-// 'text' REASON
+// INVALID_ARGUMENT: the quoted text, then the reason.
 absl::Status NotPermitted(absl::string_view text, absl::string_view reason);
 
 absl::StatusOr<double> ParseNumber(absl::string_view text);

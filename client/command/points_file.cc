@@ -35,8 +35,9 @@ Texts CellsOf(absl::string_view line) {
   return cells;
 }
 
-absl::Status Wrong(absl::string_view line, absl::string_view reason) {
-  return absl::InvalidArgumentError(absl::StrCat(line, reason));
+template <typename... Parts>
+absl::Status Wrong(const Parts&... parts) {
+  return absl::InvalidArgumentError(absl::StrCat(parts...));
 }
 
 // A column names a list of the grid, but not that of the columns themselves.
@@ -47,15 +48,14 @@ absl::Status ReadHeader(const std::string& line, const Texts& names, v1::Grid& g
   for (const absl::string_view name : names) {
     const auto found = std::find(parameters.begin(), parameters.end(), name);
     if (found == parameters.end()) {
-      return Wrong(line, absl::StrCat(": the column ", NotOneOf(name, parameters)));
+      return Wrong(line, ": the column ", NotOneOf(name, parameters));
     }
     const FieldDescriptor* field = v1::Grid::descriptor()->FindFieldByName(*found);
     if (std::find(columns.begin(), columns.end(), field) != columns.end()) {
-      return Wrong(line, absl::StrCat(": the column ", name, " is there twice"));
+      return Wrong(line, ": the column ", name, " is there twice");
     }
     if (grid.GetReflection()->FieldSize(grid, field) > 0) {
-      return Wrong("", absl::StrCat("has the column ", name, ", and --", name,
-                                    " is given; permitted: one of them"));
+      return Wrong("has the column ", name, ", and --", name, " is given; permitted: one of them");
     }
     columns.push_back(field);
     grid.add_table(*found);
@@ -77,14 +77,13 @@ absl::Status AddCell(const FieldDescriptor& column, absl::string_view text, v1::
 absl::Status ReadRow(const std::string& line, const Texts& cells, const Columns& columns,
                      v1::Grid& grid) {
   if (cells.size() != columns.size()) {
-    return Wrong(line, absl::StrCat(" has ", Counted(static_cast<double>(cells.size()), "value"),
-                                    "; the header names ",
-                                    Counted(static_cast<double>(columns.size()), "column")));
+    return Wrong(line, " has ", Counted(static_cast<double>(cells.size()), "value"),
+                 "; the header names ", Counted(static_cast<double>(columns.size()), "column"));
   }
   for (size_t i = 0; i < cells.size(); ++i) {
     const absl::Status added = AddCell(*columns[i], cells[i], grid);
     if (added.ok()) continue;
-    return Wrong(line, absl::StrCat(", column ", columns[i]->name(), ": ", added.message()));
+    return Wrong(line, ", column ", columns[i]->name(), ": ", added.message());
   }
   return absl::OkStatus();
 }
@@ -100,11 +99,11 @@ absl::Status ReadTable(absl::string_view csv, v1::Grid& grid) {
                                               : ReadRow(line, CellsOf(text), columns, grid);
     if (!read.ok()) return read;
     if (rows++ > kMaxListLength) {
-      return Wrong("has too many rows; permitted: 1 to ", absl::StrCat(kMaxListLength));
+      return Wrong("has too many rows; permitted: 1 to ", kMaxListLength);
     }
   }
-  if (rows == 0) return Wrong("", "is empty; its first line names the parameters");
-  return rows == 1 ? Wrong("", "has no row below its header") : absl::OkStatus();
+  if (rows == 0) return Wrong("is empty; its first line names the parameters");
+  return rows == 1 ? Wrong("has no row below its header") : absl::OkStatus();
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "client/library/error_text.h"
 
+#include <cstdint>
 #include <utility>
 
 #include "absl/strings/cord.h"
@@ -12,13 +13,14 @@
 namespace ballpiston::client {
 namespace {
 
-// The first detail of this type; an empty one if there is none.
+// The details of this type, merged; empty if there is none.
 template <typename Detail>
 Detail Find(const google::rpc::Status& status) {
+  Detail all;
   for (const google::protobuf::Any& any : status.details()) {
-    if (Detail detail; any.UnpackTo(&detail)) return detail;
+    if (Detail detail; any.UnpackTo(&detail)) all.MergeFrom(detail);
   }
-  return Detail();
+  return all;
 }
 
 std::string TextOf(const google::rpc::BadRequest::FieldViolation& violation) {
@@ -36,7 +38,8 @@ std::string Text(const std::string& message, const google::rpc::Status& status) 
   const auto info = Find<google::rpc::ErrorInfo>(status);
   const std::string reason = info.reason().empty() ? "" : absl::StrCat(" (", info.reason(), ")");
   const auto request = Find<google::rpc::BadRequest>(status);
-  const int left_out = LeftOut(info), count = request.field_violations_size() + left_out;
+  const int64_t left_out = LeftOut(info);
+  const int64_t count = request.field_violations_size() + left_out;
   if (count == 0) return message + reason;
   if (count == 1 && left_out == 0) return TextOf(request.field_violations(0)) + reason;
   std::string text = absl::StrCat("not valid, ", count, " violations", reason, ":");

@@ -14,6 +14,7 @@
 
 #include "ballpiston/v1/spec.pb.h"
 #include "client/output/field_text.h"
+#include "client/output/number_text.h"
 #include "client/output/spelling.h"
 
 namespace ballpiston::client {

@@ -143,7 +143,7 @@ class TableWriter : public ResultWriter {
   std::ostream& out_;
   v1::EnsembleJob job_;
   std::vector<v1::PointResult> points_;
-  std::set<std::string> models_;  // at the end
+  std::set<std::string> models_;  // of all points; End fills it
 };
 
 }  // namespace

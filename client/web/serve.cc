@@ -1,6 +1,7 @@
 // ballpiston-web has the main function and the verbs of ballpiston, but its verb `web` serves the
 // page on this machine, and forwards JSON calls to the server.
 #include "absl/strings/str_cat.h"
+#include "client/command/connection.h"
 #include "client/web/web_server.h"
 
 namespace ballpiston::client {

@@ -16,7 +16,7 @@
 namespace ballpiston::fuzz {
 namespace {
 
-// The client's --spec FILE: proto JSON.
+// A specification as proto JSON, as the client reads --spec and the gateway a request.
 void CheckSpecFile(const std::string& json) {
   v1::EnsembleSpec spec, again;
   const absl::Status read = client::ReadJson(json, spec);

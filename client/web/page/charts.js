@@ -236,9 +236,10 @@
     return isTooNarrow ? `The range of ${chart.xLabel} is too small for a picture.` : chart.note;
   }
 
-  // The value of the line at x, with its error; empty if it has none.
+  // The value of the line at x, with its error; empty if it has none. The picture shows the last of
+  // several values too.
   function textAt(line, x) {
-    const i = line.x.indexOf(x);
+    const i = line.x.lastIndexOf(x);
     return isNumber(line.y[i]) ? withError(line.y[i], line.error?.[i]) : '';
   }
 

@@ -83,7 +83,10 @@
       while (known.length < count) {
         const {value, done} = await reader.read();
         if (done) throw cutOff();
-        known = new Uint8Array(await new Blob([known, value]).arrayBuffer());
+        const longer = new Uint8Array(known.length + value.length);
+        longer.set(known);
+        longer.set(value, known.length);
+        known = longer;
       }
       const taken = known.slice(0, count);
       known = known.subarray(count);
@@ -102,8 +105,9 @@
         const header = await take(HEADER_BYTES);
         const text = await take(new DataView(header.buffer).getUint32(1));
         const message = JSON.parse(new TextDecoder().decode(text));
-        if (message.error && header[0] & LAST) throw errorOf(message.error, 'unknown');
-        if (header[0] & LAST) return;
+        const isLast = header[0] & LAST;
+        if (isLast && message.error) throw errorOf(message.error, 'unknown');
+        if (isLast) return;
         yield message;
       }
     } catch (error) {

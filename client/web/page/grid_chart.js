@@ -46,7 +46,13 @@
       ballpiston.pairsText(
         parameterPairs(parameters).filter(([name]) => name !== axis && varying[name]),
       );
-    return [...Map.groupBy(points, labelOf)];
+    const grouped = new Map();
+    for (const point of points) {
+      const label = labelOf(point);
+      if (!grouped.has(label)) grouped.set(label, []);
+      grouped.get(label).push(point);
+    }
+    return [...grouped];
   }
 
   // At most MOST_LINES of the groups, evenly selected.
