@@ -34,7 +34,7 @@ def build(folder: Path) -> None:
 
 def version() -> str:
     """The project's version, from its CMakeLists.txt."""
-    found = re.search(r"project\(ballpiston VERSION (\S+)", (_PROJECT / "CMakeLists.txt").read_text())
+    found = re.search(r"\(ballpiston VERSION (\S+)", (_PROJECT / "CMakeLists.txt").read_text())
     if found is None:
         raise SystemExit(f"{_PROJECT}/CMakeLists.txt names no version of ballpiston")
     return found[1]
@@ -58,7 +58,7 @@ def _write_protocol(package: Path) -> None:
 def _place(module: Path, package: Path) -> None:
     """The folder `google` belongs to other packages, so this package has modules of its own."""
     is_google = module.parent.name == "rpc"
-    text = module.read_text().replace("from google.rpc import", "from ballpiston._google_rpc import")
+    text = module.read_text().replace("from google.rpc", "from ballpiston._google_rpc")
     (package / ("_google_rpc" if is_google else "v1") / module.name).write_text(text)
 
 

@@ -78,7 +78,7 @@ class Page:
     def __init__(self, name: str) -> None:
         self._name = name
         self._file = _files()[name]
-        self._locations = {tuple(place.path): place for place in self._file.source_code_info.location}
+        self._locations = {tuple(p.path): p for p in self._file.source_code_info.location}
 
     def _comment(self, path: tuple[int, ...]) -> list[str]:
         place = self._locations.get(path)

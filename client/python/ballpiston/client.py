@@ -335,8 +335,8 @@ class Client:
         second, because the server measures its speed."""
         message = self._connection.call(server_pb2.GetServerStatusRequest())
         facts = {"address": self.address, "state": spelled(message, "state"), "message": message}
-        facts = record_of(message) | facts
-        return ServerStatus(**{field.name: facts[field.name] for field in fields(ServerStatus)})
+        facts = record_of(message) | {"limits": record_of(message.limits)} | facts
+        return ServerStatus(**{fact.name: facts[fact.name] for fact in fields(ServerStatus)})
 
 
 def _numbers_of(enum: Any, what: str, names: str | Iterable[str]) -> list[int]:

@@ -44,10 +44,11 @@ class Curve:
 def curve_of(message: Any) -> Curve:
     """Of a message ballpiston.v1.Curve."""
     points = message.points
-    is_of_position = any(point.HasField("position") for point in points)
-    x = column(points, "position" if is_of_position else "time")
-    functions = (column(points, name) for name in ("value", "standard_error", "batches", "limit"))
-    return Curve(message.name, *((None, x) if is_of_position else (x, None)), *functions)
+    x = "position" if any(point.HasField("position") for point in points) else "time"
+    columns: dict[str, Any] = {"time": None, "position": None}
+    for name in (x, "value", "standard_error", "batches", "limit"):
+        columns[name] = column(points, name)
+    return Curve(message.name, **columns)
 
 
 def choose_curve(messages: Iterable[Any], name: str) -> Curve:

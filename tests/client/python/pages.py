@@ -98,5 +98,6 @@ _CALL = re.compile(r"""(?:^|[;&|(]) *ballpiston ((?:[^'"();<>|&]|'[^']*'|"[^"]*"
 
 
 def calls(script: str) -> list[list[str]]:
-    """The words of each call of `ballpiston` in a line of shell, without the program's name."""
+    """The words of each call of `ballpiston`, without the program's name. A call begins a line or
+    follows ; & | or (; it ends at a parenthesis, ; & | < or > outside of quotes."""
     return [shlex.split(words, comments=True) for words in _CALL.findall(script)]

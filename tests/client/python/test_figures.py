@@ -99,7 +99,7 @@ def test_the_error_of_an_excess_is_at_least_that_of_the_noise_floor() -> None:
 
 
 @pytest.mark.parametrize(
-    "dip,error,count", [(0.7, 0.01, 2), (0.9, 0.01, 1), (0.7, 0.2, 1)], ids=["deep", "flat", "noisy"]
+    "dip,error,count", [(0.7, 0.01, 2), (0.9, 0.01, 1), (0.7, 0.2, 1)], ids=["deep", "flat", "weak"]
 )
 def test_a_dip_parts_two_maxima_if_it_is_deep_and_certain(
     dip: float, error: float, count: int
@@ -199,7 +199,7 @@ def test_collisions_and_wall_hits_have_the_invariant_density(client: ballpiston.
     expect_texts_inside(section.draw(data))
 
 
-# Every kind of failure has another count, so that the sums show which kinds are counted.
+# In a row every kind of failure has a different count, so that the sum shows which kinds it has.
 REPORT = """| case | lanes |
 |:-----|------:|
 | not a count | 5 |

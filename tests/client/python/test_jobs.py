@@ -34,7 +34,7 @@ def test_the_life_of_a_job(client: ballpiston.Client) -> None:
         job.pin(None)  # type: ignore[arg-type]
     assert not job.pin(False).pinned
     job.delete()
-    for call in (job.watch, job.refresh):
+    for call in (job.watch, job.refresh, lambda: client.job(job.name)):
         with pytest.raises(ballpiston.NotFound) as caught:
             call()
         assert caught.value.reason == "JOB_NOT_FOUND" and "goes on" not in str(caught.value)

@@ -150,6 +150,8 @@ def test_errors_of_other_calls_are_named(client: ballpiston.Client) -> None:
     with pytest.raises(ballpiston.InvalidSpecification) as caught:
         client.analytic(0.5296, 0.7)  # a single violation is one line
     assert "\n" not in str(caught.value) and "(INVALID_REQUEST)" in str(caught.value)
+    with pytest.raises(ballpiston.InvalidSpecification, match="events.*permitted"):
+        next(client.trace(rho=0.5296, delta=0.1, events=0))
 
 
 @pytest.mark.parametrize(
@@ -157,13 +159,12 @@ def test_errors_of_other_calls_are_named(client: ballpiston.Client) -> None:
     [
         ({"seed": -1}, "^seed has to be from 0 to"),
         ({"events": 1e20}, "^events has to be from"),
-        ({"events": 0}, "events.*permitted"),
         ({"cells": []}, "cells: a trace has one shape, not 0"),
         ({"cells": [4, "4x3"]}, "cells: a trace has one shape, not 2"),
     ],
 )
-def test_errors_of_a_trace_are_named(
+def test_a_wrong_value_is_an_error_before_a_trace_is_read(
     client: ballpiston.Client, keywords: dict[str, Any], text: str
 ) -> None:
     with pytest.raises(ValueError, match=text):
-        next(client.trace(**{"rho": 0.5296, "delta": 0.1, "events": 1} | keywords))
+        client.trace(**{"rho": 0.5296, "delta": 0.1, "events": 1} | keywords)

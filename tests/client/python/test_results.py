@@ -13,6 +13,7 @@ import pytest
 import ballpiston
 from ballpiston.arrays import by_name
 from ballpiston.point import measured_text
+from ballpiston.v1 import server_pb2
 
 
 def test_a_name_gives_an_array_over_the_points(first_hits: ballpiston.Result) -> None:
@@ -222,8 +223,12 @@ def test_a_trace_has_the_start_and_the_events_in_order(client: ballpiston.Client
     assert events[1:] != list(client.trace(rho=0.5296, delta=0.2, events=1000, seed=4))[1:]
 
 
-def test_the_status_names_the_server(client: ballpiston.Client) -> None:
+def test_the_status_names_the_server(
+    client: ballpiston.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
     status = client.status()
     assert status.state == "serving" and status.role == "admin"
     assert status.version == ballpiston.__version__
     assert status.limits["max_points_per_job"] == 100_000
+    monkeypatch.setattr(client._connection, "call", lambda _: server_pb2.ServerStatus())
+    assert client.status().limits["max_points_per_job"] == 0

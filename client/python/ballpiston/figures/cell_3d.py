@@ -68,7 +68,7 @@ def _draw_wall(
 ) -> None:
     """On one arc, from z to the ceiling, with light from the front, and its edges."""
     wall = np.array([x, x]), np.array([y, y]), np.array([z, np.full_like(x, ceiling)])
-    shaded: dict[str, Any] = {"color": _WALL, "lightsource": LightSource(150, 0), "ccount": 49}
+    shaded: dict[str, Any] = {"color": _WALL, "lightsource": LightSource(130, 0), "ccount": len(x)}
     axes.plot_surface(*wall, antialiased=False, zorder=depth, **shaded)
     edge = {"color": _EDGE, "linewidth": 1.2, "zorder": depth}
     axes.plot(*(np.concatenate([a, b[::-1], a[:1]]) for a, b in wall), **edge)

@@ -7,11 +7,10 @@ gas, from Varadhan's formula.
 Time on two cores: quick 3 s, default 50 s, full 5 min.
 """
 
-
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, Client, answer, check_chains
+from ballpiston.figures.parts.asking import RHO, Client, Numbers, Shapes
+from ballpiston.figures.parts.asking import answer, check_chains, number_list
 from ballpiston.figures.parts.tables import Table, Tables, estimates, rows
-from ballpiston.parameter_lists import Numbers, Shapes, number_list
 
 EFFORT = {
     "quick": {"billiard_samples": 3000, "samples": 1000},

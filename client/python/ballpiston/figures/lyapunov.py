@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from ballpiston.figures.parts import fits, style
-from ballpiston.figures.parts.asking import RHO, Client, answer, mean_free_times
+from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer
+from ballpiston.figures.parts.asking import mean_free_times, number_list
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, pick, rows, table
 from ballpiston.figures.parts.tangent_growth import second_exponent
-from ballpiston.parameter_lists import Numbers, number_list
 
 EFFORT: dict[str, dict[str, Any]] = {
     "quick": {"delta": "0.3,0.05,0.03,0.02,0.015,0.01", "collisions": 1e4, "samples": 2**14},

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, Client, answer, in_mean_free_times
+from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer
+from ballpiston.figures.parts.asking import in_mean_free_times, number_list
 from ballpiston.figures.parts.tables import Table, Tables, distinct, histograms, rows, stacked
-from ballpiston.parameter_lists import Numbers, number_list
 
 EFFORT = {"quick": {"samples": 20_000}, "full": {"samples": 10_000_000}}
 

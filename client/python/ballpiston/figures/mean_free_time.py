@@ -7,7 +7,6 @@ delta. Time on two cores: quick 1 s, default 2 s, full 3 min.
 
 from typing import Any
 
-
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer, number_list
 from ballpiston.figures.parts.tables import Table, Tables, closed_forms, estimates, rows

@@ -9,7 +9,6 @@ Time on two cores: quick 3 s, default 1 min, full 10 min.
 
 from typing import Any
 
-
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import ENERGIES, RHO, Client, Numbers, answer, divergences
 from ballpiston.figures.parts.tables import Tables, distinct, rows

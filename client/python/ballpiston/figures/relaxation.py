@@ -14,7 +14,6 @@ Time on two cores: quick 2 s, default 25 s, full 4 min.
 
 from typing import Any
 
-
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer, in_mean_free_times
 from ballpiston.figures.parts.tables import Table, Tables, curves, distinct, rows

@@ -9,11 +9,10 @@ billiard's tail comes from slow pistons. By default it takes half a minute of tw
 
 from typing import Any
 
-
 from ballpiston.figures.parts import style
-from ballpiston.figures.parts.asking import RHO, Client, answer, in_mean_free_times
+from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer
+from ballpiston.figures.parts.asking import in_mean_free_times, number_list
 from ballpiston.figures.parts.tables import Table, Tables, closed_forms, curves, estimates
-from ballpiston.parameter_lists import Numbers, number_list
 
 EFFORT = {"quick": {"samples": 20_000}, "full": {"samples": 20_000_000}}
 
