@@ -38,7 +38,8 @@ inline int ContactRow(int i, int j) { return (i + j) * (i + j + 1) / 2 + j; }
 // The number of products of a total degree up to `degree`.
 inline int ContactRows(int degree) { return ContactRow(degree + 1, 0); }
 
-// All products of a total degree up to `degree`.
+// M between all products of a total degree up to `degree`: symmetric, with ContactRows(degree) rows
+// and columns.
 Eigen::MatrixXd ContactMatrix(SiteDimensions dimensions, int degree);
 
 }  // namespace ballpiston

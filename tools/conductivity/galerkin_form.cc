@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tools/conductivity/contact_matrix.h"
 
@@ -110,10 +111,10 @@ GalerkinForm::GalerkinForm(const SiteLattice& lattice, const ClusterBasis& basis
   for (const SiteContact& c : lattice.contacts) {
     const std::vector<std::vector<Monomial>> environments = AllEnvironments(lattice, c, basis);
     for (size_t degree = 1; degree < environments.size(); ++degree) {
-      const Eigen::MatrixXi places = PlacesOf(environments[degree], degree, c, basis);
+      Eigen::MatrixXi places = PlacesOf(environments[degree], degree, c, basis);
       const Eigen::VectorXd diagonal = c.copies * contact_.diagonal().head(places.rows());
       Scatter(diagonal.replicate(1, places.cols()), places.cwiseAbs(), scales_);
-      blocks_.push_back({places, static_cast<double>(c.copies)});
+      blocks_.push_back({std::move(places), static_cast<double>(c.copies)});
     }
     AddField(c, basis, lattice.dimensions);
   }

@@ -219,19 +219,32 @@ class Comparison {
             .own_error = error};
   }
 
-  // Compares methods with a truth of at least `fewest_of_truth` samples. The truth's time is long
-  // enough for the first run of any engine, which has `fewest` samples.
-  void CompareWithTruth(Quantity quantity, double delta, uint64_t fewest_of_truth, uint64_t fewest,
-                        const std::vector<Method>& methods, const PointRuns& runs) const {
-    const uint64_t of_truth = SamplesOfTruth(runs.PredictedSecondsPerSample(kLanes));
-    if (of_truth < fewest_of_truth) return;
-    const PointEstimate truth = runs.Truth(of_truth);
+  // Compares methods with a truth of at least `fewest_truth_samples`. The truth's time is long
+  // enough for the first run of any engine, which has `fewest_samples`.
+  void CompareWithTruth(Quantity quantity, double delta, uint64_t fewest_truth_samples,
+                        uint64_t fewest_samples, const std::vector<Method>& methods,
+                        const PointRuns& runs) const {
+    const uint64_t truth_samples = SamplesOfTruth(runs.PredictedSecondsPerSample(kLanes));
+    if (truth_samples < fewest_truth_samples) return;
+    const PointEstimate truth = runs.Truth(truth_samples);
     for (const Method& method : methods) {
       const auto run = [&](size_t, uint64_t samples) {
-        const PointEstimate measured = runs.Run(method, samples);
-        const double ratio = measured.value / truth.value;
-        return MethodMeasurement{
-            .method = method,
+        return Compared(method, quantity, delta, runs.Run(method, samples), truth);
+      };
+      if (method == kSpectrum) {
+        Tell(run(0, 0));
+      } else if (method.time_step > 0) {
+        Climb(kFewestOrbits, runs.PredictedSecondsPerSample(method) * kFewestOrbits, run);
+      } else {
+        Climb(fewest_samples, 0, run);
+      }
+    }
+  }
+
+  static MethodMeasurement Compared(const Method& method, Quantity quantity, double delta,
+                                    const PointEstimate& measured, const PointEstimate& truth) {
+    const double ratio = measured.value / truth.value;
+    return {.method = method,
             .quantity = quantity,
             .delta = delta,
             .samples = measured.error == 0 ? 0 : measured.samples,  // nearly all were lost
@@ -239,15 +252,6 @@ class Comparison {
             .value = std::fabs(ratio - 1),
             .statistical_error = std::hypot(measured.error, ratio * truth.error) / truth.value,
             .own_error = measured.error / truth.value};
-      };
-      if (method == kSpectrum) {
-        Tell(run(0, 0));
-      } else if (method.time_step > 0) {
-        Climb(kFewestOrbits, runs.PredictedSecondsPerSample(method) * kFewestOrbits, run);
-      } else {
-        Climb(fewest, 0, run);
-      }
-    }
   }
 
   // The power of two whose logarithm is nearest. It follows from the predicted cost, not from a

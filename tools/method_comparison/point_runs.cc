@@ -109,7 +109,7 @@ double SecondsPerSample(const Method& method, const SteadyGas& gas) {
   return kPerHit * work.ball_wall + kPerExchange * work.collisions + kPerJump * work.jumps;
 }
 
-EnsembleSpec By(const Method& method, EnsembleSpec spec) {
+EnsembleSpec WithModelOf(const Method& method, EnsembleSpec spec) {
   spec.model = method.model;
   return spec;
 }
@@ -124,19 +124,19 @@ double PointRuns::PredictedSecondsPerSample(const Method& method) const {
   if (spec.experiment == &kEnergyRelaxation) {
     return SecondsPerOrbit(GeometryOf(spec), PointAt(spec, 0));
   }
-  return SecondsPerSample(method, AsGas(*PointExperiment::Create(By(method, spec), 0)));
+  return SecondsPerSample(method, AsGas(*PointExperiment::Create(WithModelOf(method, spec), 0)));
 }
 
 PointEstimate PointRuns::Run(const Method& method, uint64_t samples) const {
   if (method == kSpectrum) return BySpectrum(GeometryOf(spec), PointAt(spec, 0));
-  EnsembleSpec run = By(method, spec);
+  EnsembleSpec run = WithModelOf(method, spec);
   if (method.time_step == 0) return Answered(run, samples, false);
   run.seed += samples;
   return ByFixedSteps(AsGas(*PointExperiment::Create(run, 0)), method.time_step, samples);
 }
 
 PointEstimate PointRuns::Truth(uint64_t samples) const {
-  return Answered(By(kLanes, spec), samples, true);
+  return Answered(WithModelOf(kLanes, spec), samples, true);
 }
 
 PointRuns RelaxationRuns(const PairGeometry& geometry, uint64_t seed) {

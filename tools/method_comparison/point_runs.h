@@ -24,12 +24,12 @@ struct PointEstimate {
 struct PointRuns {
   EnsembleSpec spec;  // one point; without model and samples
 
-  // On a processor of about 3 GHz, within a factor of three. Not for kSpectrum.
+  // On a processor of about 3 GHz, within a factor of three. For relaxation times only of kLanes.
   double PredictedSecondsPerSample(const Method& method) const;
 
-  // By the spectrum: without samples; `error` is the bound of its error, and `seconds` the time of
-  // one evaluation. The computation of the spectrum (about 0.1 s), which is done once for all
-  // geometries, counts if it is the first one.
+  // By the spectrum, for relaxation times only: without samples; `error` is the bound of its error,
+  // and `seconds` the time of one evaluation. The computation of the spectrum (about 0.1 s), which
+  // is done once for all geometries, counts if it is the first one.
   PointEstimate Run(const Method& method, uint64_t samples) const;
 
   // By kLanes; with other samples than a run.

@@ -28,7 +28,7 @@ struct Failures {
   uint64_t missed = 0;          // the ball beyond the piston
   uint64_t phantoms = 0;        // contacts with the piston elsewhere
   uint64_t beyond_walls = 0;    // pistons of a gas at a turn or a contact beyond a wall
-  // The worst |dE/E|, if it was measured; infinite if an error was not a number.
+  // The worst |dE/E|; NaN if it was not measured, infinite if an error was not a number.
   double energy = std::numeric_limits<double>::quiet_NaN();
   // For each orbit that reached its end, the change of dE/E in its second half; for a gas, the
   // change since its start. The rounding of the start does not contribute.

@@ -10,6 +10,7 @@
 namespace ballpiston::stability {
 
 std::string MarkdownTable(Rows rows, size_t labels) {
+  // From the end, so that each row is compared with one whose label is still there.
   for (size_t i = rows.size() - 1; i > 1; --i) {
     if (rows[i].front() == rows[i - 1].front()) rows[i].front().clear();
   }

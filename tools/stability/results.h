@@ -11,9 +11,10 @@
 
 namespace ballpiston::stability {
 
+// Neighbouring cases have different names.
 struct System {
   const char* title;
-  std::vector<CaseResult> results;  // case by case, of the same methods in each case
+  std::vector<CaseResult> results;                   // case by case, the same methods in each case
   std::vector<uint64_t Failures::*> not_looked_for;  // in these cases
 };
 

@@ -73,7 +73,7 @@ const std::vector<Constant> kConstants = {{BallPistonChain(), kChainCorrection, 
                                           {EqualSitesChain(2), kDiscChainCorrection, 3e-6},
                                           {EqualSitesChain(3), kSphereChainCorrection, 1e-7}};
 
-// A unit of the published last digit.
+// A unit of the published last digit. QuickPlanAgreesWithTheConstants computes the constant.
 TEST(Conductivity, SpheresHaveThePublishedValue) {
   EXPECT_NEAR(kSphereChainCorrection.value, -0.000373, 1e-6);
 }

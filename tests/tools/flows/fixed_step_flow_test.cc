@@ -109,6 +109,7 @@ TEST(FixedStepGas, ABallThatHasPassedAPistonExchanges) {
                       .speed = 0.8};
     state.pistons[static_cast<size_t>(piston)] = {.offset = -0.3 * sign, .velocity = -0.6 * sign};
     FixedStepGas gas(geometry, state, ThermalWalls(), 0.02);
+    EXPECT_DOUBLE_EQ(gas.NextTime(), 0.08);
     const GasEvent event = gas.Step();
     EXPECT_EQ(event.kind, EventKind::kBallPiston);
     EXPECT_EQ(event.ball, 4);

@@ -79,6 +79,7 @@ TEST(Program, EveryValueThatIsNotPermittedIsNamedWithItsRange) {
     EXPECT_THAT(result.err, HasSubstr("method_comparison: " + complaint));
     EXPECT_THAT(result.err,
                 HasSubstr("method_comparison: --relaxation-delta: delta is -1; permitted"));
+    EXPECT_EQ(std::ranges::count(result.err, '\n'), 2) << result.err;
   }
 }
 
