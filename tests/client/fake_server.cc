@@ -43,9 +43,10 @@ std::unique_lock<std::mutex> FakeServer::Record(const google::protobuf::Message&
 
 grpc::Status FakeServer::Find(const std::string& name, v1::EnsembleJob* job) const {
   for (const v1::EnsembleJob& each : jobs) {
-    if (each.name() == name) *job = each;
+    if (each.name() != name) continue;
+    *job = each;
+    return grpc::Status::OK;
   }
-  if (job->name() == name) return grpc::Status::OK;
   return WithReason(grpc::StatusCode::NOT_FOUND, "no such job: " + name, "JOB_NOT_FOUND");
 }
 

@@ -98,6 +98,7 @@ class FakeServer final : v1::EnsembleService::Service,
 
   grpc::Status GetEnsembleJob(Context*, const v1::GetEnsembleJobRequest* request,
                               v1::EnsembleJob* job) override {
+    const auto lock = Record(*request);
     return Find(request->name(), job);
   }
 
@@ -206,8 +207,9 @@ class FakeServer final : v1::EnsembleService::Service,
     return trace_end;
   }
 
-  grpc::Status GetServerStatus(Context*, const v1::GetServerStatusRequest*,
+  grpc::Status GetServerStatus(Context*, const v1::GetServerStatusRequest* request,
                                v1::ServerStatus* answer) override {
+    const auto lock = Record(*request);
     *answer = status;
     return grpc::Status::OK;
   }

@@ -1,5 +1,8 @@
 // The contract of the command line, as pages of commands with their output: transcripts/*.txt. Each
 // page is a test. transcripts/README.md describes a page, and says how to write the output again.
+#include <google/protobuf/descriptor.h>
+#include <gtest/gtest-spi.h>
+
 #include <list>
 #include <regex>
 
@@ -110,6 +113,11 @@ class Replay : public ProgramTest {
   }
 
   std::string LastRequest(const std::string& call) {
+    using google::protobuf::DescriptorPool;
+    EXPECT_NE(DescriptorPool::generated_pool()->FindMessageTypeByName(
+                  absl::StrCat("ballpiston.v1.", call, "Request")),
+              nullptr)
+        << call << " is not a call";
     const google::protobuf::Message* const request = server_.LastAsked(call);
     return absl::StrCat(request == nullptr ? "none" : request->ShortDebugString(), "\n");
   }
@@ -211,6 +219,10 @@ TEST_F(Replay, ReplacesWrongOutput) {
             submit + "  ensembleJobs/abc\n" + result +
                 "  ! ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n  [exit 5]\n" +
                 end);
+}
+
+TEST_F(Replay, LastRequestNeedsTheNameOfACall) {
+  EXPECT_NONFATAL_FAILURE(Replayed("  $ last-request Create\n"), "Create is not a call");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ using ::testing::AnyOf;
 class InterruptTest : public ::testing::Test {
  protected:
   void ExpectThatTheJobGoesOn() const {
-    EXPECT_THAT(server_.List().jobs(0).state(),
+    EXPECT_THAT(server_.List().jobs().at(0).state(),
                 AnyOf(v1::EnsembleJob::QUEUED, v1::EnsembleJob::RUNNING));
   }
 

@@ -31,8 +31,9 @@ std::unique_ptr<Process> TestServer::StartClient(Words words) const {
 
 std::string TestServer::Output(const Words& words) const {
   const ProcessResult result = Client(words);
-  EXPECT_THAT(result, ExitsWith(0)) << testing::PrintToString(words);
-  return result.out;
+  if (result.exit_code == 0) return result.out;
+  throw std::runtime_error(absl::StrCat(testing::PrintToString(words), " exits with ",
+                                        result.exit_code, "\n", result.err));
 }
 
 std::string TestServer::Submit(const Words& words) const {

@@ -37,13 +37,13 @@ ProcessOptions ClientCommand(const TemporaryFolder& home, Words words);
 inline const auto kQuiet =
     testing::MatchesRegex("(Matplotlib is building the font cache[^\n]*\n)?");
 
-// Parses JSON of this message. If the text is something else, the test fails.
+// Parses JSON of this message. Throws std::runtime_error if the text is something else.
 template <typename Message>
 Message FromJson(const std::string& text) {
   Message message;
   const auto status = google::protobuf::util::JsonStringToMessage(text, &message);
-  EXPECT_TRUE(status.ok()) << status.ToString() << "\n" << text.substr(0, 500);
-  return message;
+  if (status.ok()) return message;
+  throw std::runtime_error(status.ToString() + "\n" + text.substr(0, 500));
 }
 
 // A server that has started, and clients of it: `ballpiston WORDS... --server ADDRESS`.
@@ -66,7 +66,8 @@ class TestServer : public ServerProcess {
   std::string Submit(const Words& words) const;  // the name that `submit` prints
 
  private:
-  std::string Output(const Words& words) const;  // of a client that exits with 0
+  // Of a client that exits with 0; throws std::runtime_error if it exits with another code.
+  std::string Output(const Words& words) const;
 };
 
 // The bytes of "points" in a document of `result --format json`.

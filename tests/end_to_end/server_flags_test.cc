@@ -23,10 +23,12 @@ TEST(ServerFlags, HelpHasDefaultsRangesAndExitCodesInShortLines) {
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(help.err, "");
   EXPECT_EQ(Server({"-h"}).out, help.out);
-  for (const char* text : {"\n\nLimits; 0 means no limit:\n", "--max-streams N:0 to 32768=2048\n",
-                           "--drain-seconds SECONDS:0 to 3600=10\n", "{info,warning,error}=info\n",
-                           "Default: ~/.local/state/ballpiston;", "--workers N:1 to 1024\n",
-                           "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 "}) {
+  for (const char* text :
+       {"\n\nLimits; 0 means no limit:\n", "--max-streams N:0 to 32768=2048\n",
+        "--drain-seconds SECONDS:0 to 3600=10\n", "{info,warning,error}=info\n",
+        "Default: ~/.local/state/ballpiston;", "--workers N:1 to 1024\n", "\n  --max-memory-mib ",
+        "\n  --max-streams-per-principal ", "\n  --slurm-account ", "\n  --slurm-cluster ",
+        "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 "}) {
     EXPECT_THAT(help.out, HasSubstr(text));
   }
   EXPECT_THAT(Words(absl::StrSplit(help.out, '\n')), Each(SizeIs(::testing::Le(100u))));

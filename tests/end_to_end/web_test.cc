@@ -267,7 +267,7 @@ TEST_F(ReportTest, HasJobsWithTheirResultsInOneFile) {
   const auto shown = FromJson<file::v1::SavedResult>(jobs[0]);
   EXPECT_EQ(shown.job().name(), first);
   ASSERT_EQ(shown.points_size(), 2);
-  EXPECT_EQ(shown.points(0).histograms(0).counts_size(), 1000);
+  EXPECT_EQ(shown.points().at(0).histograms().at(0).counts_size(), 1000);
   EXPECT_EQ(FromJson<file::v1::SavedResult>("{\"job\":" + jobs[1]).job().name(), second);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdio>
+#include <exception>
 
 #include "tests/end_to_end/programs.h"
 
@@ -72,7 +73,9 @@ class Sweep {
                                 .launcher = {"env", "SLURM_CONF=" + cluster_.conf()}});
   }
   ~Sweep() {
-    if (testing::Test::HasFailure()) std::cerr << server_->log() << std::endl;
+    if (testing::Test::HasFailure() || std::uncaught_exceptions() > 0) {
+      std::cerr << server_->log() << std::endl;
+    }
   }
 
   const Cluster& cluster() const { return cluster_; }

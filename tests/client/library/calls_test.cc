@@ -46,6 +46,15 @@ TEST_F(ClientTest, LargeAnswersAreReceived) {
   server_.status.set_version(std::string(5 << 20, 'v'));
   ASSERT_OK_AND_ASSIGN(const v1::ServerStatus status, StartServer().Status());
   EXPECT_EQ(status.version().size(), size_t{5 << 20});
+  EXPECT_THAT(server_.Asked<v1::GetServerStatusRequest>(), SizeIs(1));
+}
+
+TEST_F(ClientTest, TheFakeServerFindsTheFirstJobOfAName) {
+  server_.jobs.push_back(JobIn(v1::EnsembleJob::FAILED));
+  const Client client = StartServer();
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Get(kJobName));
+  EXPECT_EQ(job.state(), v1::EnsembleJob::QUEUED);
+  EXPECT_EQ(client.Get("").status().code(), absl::StatusCode::kNotFound);
 }
 
 TEST_F(ClientTest, ListStopsAtItsLimit) {

@@ -86,6 +86,7 @@ TEST(ClockText, CountsMinutesThenHours) {
 
 // ---- answers.h ----
 
+// transcripts/plan.txt shows nine points, which have a row each.
 TEST(PlanTable, HasLaddersUpToEightPoints) {
   v1::PlanEnsembleJobResponse plan;
   for (int i = 0; i < 8; ++i) plan.add_points();
