@@ -35,7 +35,7 @@ void ExitUnless(const absl::Status& ok) {
 
 // ---- the server ----
 
-// An executor takes part only as far as its caller has it take part. A lease is one turn.
+// A lease is one turn: no thread shares it.
 struct OneTurn : SharedWork {
   bool HasTurn() const override { return false; }
 };

@@ -60,7 +60,8 @@ inline bool IsOneIn(size_t n, const std::string& input) {
 }
 
 // The seeds: the files of FOLDER/NAME, and those that the target makes itself. Files *.textproto
-// are converted to the bytes of their message. Throws if one spells no such message.
+// are converted to the bytes of their message. Throws if a .textproto file is not a text of this
+// message, or if a file is empty or cannot be read.
 inline std::vector<std::string> SeedsOf(const FuzzTarget& target, const std::string& folder) {
   const std::filesystem::path of_target = folder + "/" + target.name;
   std::set<std::filesystem::path> paths;
@@ -70,10 +71,11 @@ inline std::vector<std::string> SeedsOf(const FuzzTarget& target, const std::str
   std::vector<std::string> seeds;
   for (const std::filesystem::path& path : paths) {
     seeds.push_back(Contents(path));
+    if (seeds.back().empty()) throw std::runtime_error("cannot read " + path.string());
     if (path.extension() != ".textproto") continue;
     const std::unique_ptr<google::protobuf::Message> message(target.message->New());
     if (!google::protobuf::TextFormat::ParseFromString(seeds.back(), message.get())) {
-      throw std::runtime_error(path.string() + " does not spell a " + message->GetTypeName());
+      throw std::runtime_error(path.string() + " is not a text of a " + message->GetTypeName());
     }
     seeds.back() = message->SerializeAsString();
   }

@@ -16,8 +16,9 @@ constexpr std::string_view kWriteSeeds = "--write_seeds=";
 
 const FuzzTarget& Target() {
   static const std::string name = std::getenv("FUZZ_TARGET");
-  static const FuzzTarget& target = *std::ranges::find(Targets(), name, &FuzzTarget::name);
-  return target;
+  static const auto target = std::ranges::find(Targets(), name, &FuzzTarget::name);
+  if (target == Targets().end()) throw std::out_of_range("no fuzz target " + name);
+  return *target;
 }
 
 // Protobuf must not log an error for each of a million inputs.

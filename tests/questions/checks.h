@@ -9,6 +9,9 @@
 
 namespace ballpiston::questions {
 
+// The rules that decide how to go on with a server: no question computes for ever; no call fails.
+inline constexpr char kEndCheck[] = "end", kCallCheck[] = "call";
+
 struct Finding {
   std::string check;  // the name of the broken rule
   std::string what;

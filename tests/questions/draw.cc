@@ -177,6 +177,8 @@ std::string AddDefect(Dice& dice, const Parameter& parameter, double bound_of_de
 
 // ---- questions ----
 
+constexpr double kShareWithDefect = 1.0 / 7;
+
 class Drawing {
  public:
   Drawing(uint64_t seed, uint64_t number, double most_seconds)
@@ -193,7 +195,7 @@ class Drawing {
     SetMethod();
     SetTarget();
     Question question = {spec_};
-    if (dice_.Chance(1.0 / 7)) {
+    if (dice_.Chance(kShareWithDefect)) {
       const auto& uses = experiment_.parameters;
       const Parameter& parameter = *uses[dice_.Below(uses.size())].parameter;
       question.defect = AddDefect(dice_, parameter, bound_, question.spec);

@@ -159,11 +159,12 @@ Report ReportFromText(const std::string& text) {
 }
 
 Finding Death(int status) {
+  if (status == 0) return {"crash", "no report"};
   if (!WIFSIGNALED(status)) return {"crash", absl::StrCat("exit code ", WEXITSTATUS(status))};
   if (WTERMSIG(status) != SIGXCPU) {
     return {"crash", absl::StrCat("signal ", strsignal(WTERMSIG(status)))};
   }
-  return {"end", absl::StrCat("no end after ", kMostProcessorSeconds, " s of processor time")};
+  return {kEndCheck, absl::StrCat("no end after ", kMostProcessorSeconds, " s of processor time")};
 }
 
 }  // namespace
@@ -214,7 +215,7 @@ Report InChild(const std::function<Report()>& ask) {
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   Report report = ReportFromText(Contents(file));
-  if (status != 0) {
+  if (status != 0 || report.outcome.empty()) {
     report.outcome = "died";
     report.findings.push_back(Death(status));
   }

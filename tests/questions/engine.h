@@ -13,7 +13,8 @@ namespace ballpiston::questions {
 Report AskEngine(const Question& question, double most_seconds);
 
 // The report of `ask`, which runs in a forked process and must not start threads. If the process
-// dies, the finding is "crash"; if it takes more than kMostProcessorSeconds, "end".
+// dies or gives no report, the finding is "crash"; if it takes more than kMostProcessorSeconds,
+// kEndCheck.
 Report InChild(const std::function<Report()>& ask);
 
 // Returns a function that asks ballpistond, a process on a Unix socket in a temporary folder. The

@@ -62,6 +62,7 @@ TEST(Checks, FindEachDefectAndNothingElse) {
   } rows[] = {
       {"a good answer", OfAnswer(error), kNothing},
       {"an exact value is NaN", OfAnswer(error + " exact: nan"), "finite"},
+      {"an exact value is infinite", OfAnswer(error + " exact: inf"), "finite"},
       {"an error of 0", OfAnswer("standard_error: 0"), "false zero"},
       {"an error below the rounding", OfAnswer("standard_error: 1e-17"), "false zero"},
       {"no error", OfAnswer(""), "measured"},
@@ -136,7 +137,9 @@ TEST(Draw, AsksEveryExperimentByEveryModelWithEveryTarget) {
 
 TEST(Child, ReportsADeath) {
   const std::pair<int, const char*> deaths[] = {
-      {SIGKILL, "crash"}, {SIGXCPU, "end"}};  // as the kernel does when the time is used up
+      {SIGKILL, "crash"},
+      {SIGXCPU, "end"},  // as the kernel does when the time is used up
+      {0, "crash"}};     // no signal, and nothing is reported
   for (const auto& [signal, check] : deaths) {
     const Report report = InChild([signal = signal]() -> Report {
       raise(signal);

@@ -56,9 +56,13 @@ class Conversation {
     return std::move(report_);
   }
 
-  Report Failed(const absl::Status& status) {
+  void AddFailure(const absl::Status& status) {
     report_.outcome = "failed";
-    report_.Add("call", status.ToString());
+    report_.Add(kCallCheck, status.ToString());
+  }
+
+  Report Failed(const absl::Status& status) {
+    AddFailure(status);
     return std::move(report_);
   }
 
@@ -70,12 +74,13 @@ class Conversation {
     bool takes_too_much = false;
     AwaitThat([&] {
       job = client_.Get(name);
-      takes_too_much = server_.ProcessorSeconds() - start > kMostProcessorSeconds;
+      takes_too_much = job.ok() && server_.ProcessorSeconds() - start > kMostProcessorSeconds;
       return !job.ok() || wanted(job->state()) || takes_too_much;
     });
     if (job.ok() && !wanted(job->state())) {
-      report_.Add("end", absl::StrCat("the job is ", v1::EnsembleJob::State_Name(job->state()),
-                                      " after ", kMostProcessorSeconds, " s of processor time"));
+      report_.Add(kEndCheck,
+                  absl::StrCat("the job is ", v1::EnsembleJob::State_Name(job->state()), " after ",
+                               kMostProcessorSeconds, " s of processor time"));
     }
     return job;
   }
@@ -110,7 +115,10 @@ class Conversation {
 
   void JudgeResults(const v1::EnsembleJob& job) {
     const auto points = client_.Results(job.name());
-    if (!points.ok()) return static_cast<void>(Failed(points.status()));
+    if (!points.ok()) {
+      AddFailure(points.status());
+      return;
+    }
     if (static_cast<int>(points->size()) != job.progress().points()) {
       report_.Add("job",
                   absl::StrCat(points->size(), " results of ", job.progress().points(), " points"));
@@ -136,10 +144,10 @@ Report Ask(const Question& question, double most_seconds, std::unique_ptr<Runnin
   try {
     report = Conversation(question, server->process, server->client).Have(most_seconds);
   } catch (const std::runtime_error& late) {  // tests/support/await.h
-    report = {.outcome = "no end", .findings = {{"end", late.what()}}};
+    report = {.outcome = "no end", .findings = {{kEndCheck, late.what()}}};
   }
   // A call may fail a little before the process has ended.
-  const std::chrono::milliseconds patience(report.Breaks("call") ? 5000 : 0);
+  const std::chrono::milliseconds patience(report.Breaks(kCallCheck) ? 5000 : 0);
   if (const auto code = server->process.AwaitEnd(patience)) {
     const std::string log = server->process.log();
     const std::string last = log.substr(log.size() - std::min<size_t>(log.size(), 600));
@@ -147,7 +155,7 @@ Report Ask(const Question& question, double most_seconds, std::unique_ptr<Runnin
     report.findings = {
         {"crash", absl::StrCat("the server ended with exit code ", *code, ": ", last)}};
     server.reset();
-  } else if (report.Breaks("end")) {
+  } else if (report.Breaks(kEndCheck)) {
     server.reset();
   }
   return report;

@@ -204,19 +204,20 @@ class Client {
 
   void Create() {
     const bool has_key = Does(kRetries) && machine_.Chance(0.7);
-    const Question question =
-        QuestionOf(has_key ? kFirstKeyedSeed + machine_.Below(12) : 1 + machine_.Below(6));
+    const Question question = QuestionOf(has_key ? kFirstKeyedSeed + machine_.Below(kKeys)
+                                                 : 1 + machine_.Below(kSeedsWithoutKey));
     const std::string key = question.has_key ? absl::StrCat("key-", question.seed) : "";
     v1::CreateEnsembleJobRequest request = CreateRequest(SpecOf(question), key);
     request.set_priority(static_cast<int32_t>(question.seed % 3) - 1);
     request.set_fresh(!question.has_key && machine_.Chance(0.5));
-    Call call(world_, absl::StrCat("create ", question.seed));
+    Call call(world_, "create");
     if (!call) return;
+    world_.Tell(absl::StrCat("create: seed ", question.seed));
     const KnownJobs before = expectations_.all();
     const auto job = call->book().Create(LocalPrincipal(), request, CheckSpec(SpecOf(question)));
     if (!call.Succeeds(job.status())) return;
-    world_.Tell(absl::StrCat("created ", *JobIdOf(job->name())));
-    expectations_.Created(before, question, *job);
+    world_.Tell(absl::StrCat("created ", *JobIdOf(job->name()), " of seed ", question.seed));
+    expectations_.Named(before, question, *job);
   }
 
   void Get(const std::string& id) {

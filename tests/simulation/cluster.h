@@ -19,12 +19,14 @@
 
 namespace ballpiston::server {
 
+inline constexpr std::chrono::milliseconds kLongestBlock(200);
+
 // Toy experiments. Their blocks take time, and a block that crashes the engine (Question) calls
 // `crash`.
 inline ExperimentFactory ToyExperiments(Machine& machine, std::function<void()> crash) {
   return FakeExperimentsBySeed([&machine, crash = std::move(crash)](
                                    uint64_t seed, size_t, uint64_t block, const std::stop_token&) {
-    machine.Sleep(machine.UpTo(std::chrono::milliseconds(200)));
+    machine.Sleep(machine.UpTo(kLongestBlock));
     const Question question = QuestionOf(seed);
     const bool is_last = block + 1 == static_cast<uint64_t>(question.blocks);
     if (question.crashes && is_last) crash();
@@ -39,6 +41,7 @@ class SimulatedCluster {
       : machine_(machine),
         files_(files),
         engine_crashes_(engine_crashes),
+        // A toy sample takes 0.02 s: a point has few leases.
         executor_(scheduler, {.lease = std::chrono::seconds(10), .least_waiting = 2},
                   std::make_unique<FakeFiles>(files),
                   {.identity = "me",
@@ -58,10 +61,14 @@ class SimulatedCluster {
 
   void Start() {
     executor_.Start();
-    for (int i = 0; i < 2; ++i) workers_.emplace_back([this] { Work(); });
+    for (int i = 0; i < kWorkers; ++i) workers_.emplace_back([this] { Work(); });
   }
 
  private:
+  static constexpr int kWorkers = 2;
+  static constexpr std::chrono::seconds kLongestBreak{60};  // between two workers
+  static constexpr std::chrono::minutes kLongestStop{5};    // of a worker that computes
+
   // The worker's machine loses its power.
   struct Killed {};
 
@@ -77,7 +84,7 @@ class SimulatedCluster {
 
   void Work() {
     while (!is_shutting_down_) {
-      machine_.Sleep(machine_.UpTo(std::chrono::seconds(60)));
+      machine_.Sleep(machine_.UpTo(kLongestBreak));
       if (machine_.Chance(0.2)) files_.now += absl::Hours(machine_.Below(20)) - absl::Hours(10);
       if (machine_.Chance(0.05)) files_.files.clear();
       if (machine_.Chance(0.5)) files_.files.merge(removed_reports_);
@@ -117,7 +124,7 @@ class SimulatedCluster {
   EndOfWork EndOfWorker() {
     if (machine_.Chance(is_shutting_down_ ? 0.5 : 0.002)) throw Killed();
     if (is_shutting_down_) return EndOfWork::kNow;
-    if (machine_.Chance(0.002)) machine_.Sleep(machine_.UpTo(std::chrono::minutes(5)));
+    if (machine_.Chance(0.002)) machine_.Sleep(machine_.UpTo(kLongestStop));
     return machine_.Chance(0.002) ? EndOfWork::kAfterChunk : EndOfWork::kNotYet;
   }
 

@@ -28,8 +28,12 @@ struct Question {
   bool crashes = false;        // the engine crashes in the last block of each point
 };
 
-// Every client derives a question from its seed in this way. From kFirstKeyedSeed on it has a key.
-inline constexpr uint64_t kFirstKeyedSeed = 1000;
+// Every client derives a question from its seed in this way: one of 1 to kSeedsWithoutKey, or of
+// the kKeys seeds from kFirstKeyedSeed on, which have a key.
+inline constexpr uint64_t kSeedsWithoutKey = 6, kFirstKeyedSeed = 1000, kKeys = 12;
+inline constexpr uint64_t kFirstCrash = kFirstKeyedSeed + 6, kSecondCrash = kFirstKeyedSeed + 9;
+static_assert(kSecondCrash < kFirstKeyedSeed + kKeys);
+
 inline Question QuestionOf(uint64_t seed) {
   const bool has_tolerance = seed % 3 == 0;
   return {.seed = seed,
@@ -37,7 +41,7 @@ inline Question QuestionOf(uint64_t seed) {
           .blocks = static_cast<int64_t>(1 + seed * 7 % (has_tolerance ? 300 : 60)),
           .has_tolerance = has_tolerance,
           .has_key = seed >= kFirstKeyedSeed,
-          .crashes = seed == kFirstKeyedSeed + 6 || seed == kFirstKeyedSeed + 9};
+          .crashes = seed == kFirstCrash || seed == kSecondCrash};
 }
 
 inline v1::EnsembleSpec SpecOf(const Question& question) {
@@ -91,13 +95,14 @@ class Expectations {
   // ---- answers of calls that began when `before` was known ----
 
   // By a call that may be the first that names the job: its Create may have had no answer.
-  void Created(const KnownJobs& before, const Question& question, const v1::EnsembleJob& job) {
+  void Named(const KnownJobs& before, const Question& question, const v1::EnsembleJob& job) {
     const std::string id = *JobIdOf(job.name());
     const auto [known, is_new] = jobs_.try_emplace(id, KnownJob{.question = question});
     if (known->second.question.seed != question.seed) {
       throw Violation("another question", id, absl::StrCat("answers the question ", question.seed));
     }
     Got(KnownIn(before, id), job);
+    CheckOnlyJob(id, known->second);
   }
 
   void Got(const KnownJob& before, const v1::EnsembleJob& job) {
@@ -142,21 +147,13 @@ class Expectations {
 
   void Listed(const KnownJobs& before, const std::vector<v1::EnsembleJob>& jobs) {
     std::set<std::string> found;
-    std::map<uint64_t, std::string> of_seed;  // jobs of requests with a key
     for (const v1::EnsembleJob& job : jobs) {
       const std::string id = *JobIdOf(job.name());
       if (!found.insert(id).second) throw Violation("list", id, "is in the list twice");
-      Created(before, QuestionOf(job.spec().seed()), job);
+      Named(before, QuestionOf(job.spec().seed()), job);
     }
     for (const auto& [id, known] : before) {
       if (!found.contains(id) && !known.is_deleted) Missed(id);
-    }
-    // A request with a key has one job, however often it is retried.
-    for (const std::string& id : found) {
-      const KnownJob job = Known(id);
-      if (!job.question.has_key || job.deletions_asked > 0) continue;
-      const auto [first, is_first] = of_seed.try_emplace(job.question.seed, id);
-      if (!is_first) throw Violation("second job", id, absl::StrCat("and ", first->second));
     }
   }
 
@@ -213,6 +210,18 @@ class Expectations {
   static KnownJob KnownIn(const KnownJobs& jobs, const std::string& id) {
     const auto found = jobs.find(id);
     return found == jobs.end() ? KnownJob() : found->second;
+  }
+
+  // A request with a key has one job, however often it is retried. A job that is being deleted may
+  // still be named, and another may be created.
+  void CheckOnlyJob(const std::string& id, const KnownJob& job) const {
+    if (!job.question.has_key || job.deletions_asked > 0) return;
+    for (const auto& [other, known] : jobs_) {
+      const bool is_of_key = known.question.seed == job.question.seed;
+      if (other != id && is_of_key && known.deletions_asked == 0) {
+        throw Violation("second job", id, "and " + other);
+      }
+    }
   }
 
   void NoteState(const std::string& id, const v1::EnsembleJob& job) {

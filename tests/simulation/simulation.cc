@@ -302,8 +302,8 @@ SimulationOptions Shrunk(SimulationOptions options, const Finding& finding, int 
   for (size_t kind = 0; kind < kKinds; ++kind) {
     try_with([kind](SimulationOptions& fewer) { fewer.happens[kind] = false; });
   }
-  for (int clients = 1; clients < 4; ++clients) {
-    try_with([clients](auto& fewer) { fewer.clients = std::min(clients, fewer.clients); });
+  for (int clients = 1; clients < options.clients; ++clients) {
+    try_with([clients](SimulationOptions& fewer) { fewer.clients = clients; });
   }
   for (int i = 0; i < 12; ++i) {
     try_with([](SimulationOptions& fewer) { fewer.steps /= 2; });

@@ -52,6 +52,20 @@ TEST(Simulation, EveryPromiseHoldsInEveryWorld) {
   if (finding) Report({.seed = seed + worlds - 1}, *finding);
 }
 
+TEST(Expectations, ASecondJobOfAKeyIsAViolation) {
+  Expectations expectations;
+  v1::EnsembleJob first, second;
+  first.set_name(JobName("1"));
+  second.set_name(JobName("2"));
+  for (v1::EnsembleJob* job : {&first, &second}) job->set_state(v1::EnsembleJob::QUEUED);
+  const Question question = QuestionOf(kFirstKeyedSeed);
+  expectations.Named({}, question, first);
+  EXPECT_NO_THROW(expectations.Named({}, question, first));
+  EXPECT_THROW(expectations.Named({}, question, second), Violation);
+  expectations.AskedToDelete("1");
+  EXPECT_NO_THROW(expectations.Named({}, question, second));
+}
+
 TEST(Simulation, OneSeedIsOneWorld) {
   const SimulationOptions options = {.seed = 5, .steps = 3000};
   const SimulationReport once = Simulate(options), again = Simulate(options);

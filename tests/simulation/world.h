@@ -13,13 +13,35 @@ namespace ballpiston::server {
 
 // The kinds of events and calls that can be switched off. A client always creates, reads, lists and
 // pins jobs.
-// clang-format off
-enum Kind { kCrashes, kPowerCuts, kRestarts, kSlowDisk, kFullDisk, kBadDisk, kEngineCrashes,
-            kCluster, kCancels, kDeletes, kWatches, kRetries, kKinds };
+enum Kind {
+  kCrashes,
+  kPowerCuts,
+  kRestarts,
+  kSlowDisk,
+  kFullDisk,
+  kBadDisk,
+  kEngineCrashes,
+  kCluster,
+  kCancels,
+  kDeletes,
+  kWatches,
+  kRetries,
+  kKinds,
+};
 inline constexpr const char* kNamesOfKinds[kKinds] = {
-    "crashes", "power cuts", "restarts", "a slow disk", "a full disk", "a bad disk",
-    "an engine that crashes", "a cluster", "cancellations", "deletions", "watches", "retries"};
-// clang-format on
+    "crashes",
+    "power cuts",
+    "restarts",
+    "a slow disk",
+    "a full disk",
+    "a bad disk",
+    "an engine that crashes",
+    "a cluster",
+    "cancellations",
+    "deletions",
+    "watches",
+    "retries",
+};
 
 struct SimulationOptions {
   uint64_t seed = 1;
@@ -66,8 +88,8 @@ class World {
   Machine machine;
   Expectations expectations;
   std::shared_ptr<Life> life;
-  uint64_t troubles =
-      0;  // how often calls could begin to fail: the disk fails, or the server stops
+  // How often calls could begin to fail: the disk fails, or the server stops.
+  uint64_t troubles = 0;
   bool is_in_trouble = false;
   std::optional<Finding> finding;
 

@@ -49,8 +49,8 @@ class Cluster {
   const std::string script_ = SourcePath("scripts/test-cluster.sh");
   const TemporaryFolder folder_;
   const std::string path_ = folder_.File("cluster");
-  // A shell that waits for the end of this pipe, and then stops the cluster: after the destructor,
-  // and after the end of this process, whatever ends it.
+  // A shell that waits for the end of this pipe, and then stops the cluster: when this is
+  // destroyed, and after the end of this process, whatever ends it.
   std::unique_ptr<std::FILE, Stop> keeper_;
 };
 
@@ -98,7 +98,10 @@ class Sweep {
     AwaitThat([&] { return absl::StrContains(Problem(), text); });
   }
   void AwaitNoLeases() const {
-    AwaitThat([this] { return Status().waiting_leases() + Status().taken_leases() == 0; });
+    AwaitThat([this] {
+      const v1::ClusterStatus status = Status();
+      return status.waiting_leases() + status.taken_leases() == 0;
+    });
   }
   std::vector<pid_t> Workers() const {  // that compute
     const std::string end(1, '\0');
