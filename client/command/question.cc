@@ -90,7 +90,7 @@ absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options) {
 
 absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, absl::string_view json) {
   v1::EnsembleSpec spec;
-  absl::ConsumePrefix(&json, "\xEF\xBB\xBF");  // some programs' mark
+  absl::ConsumePrefix(&json, "\xEF\xBB\xBF");  // the byte order mark that some programs write
   const absl::Status bad = ReadJson(std::string(json), spec);
   if (bad.ok()) return spec;
   return absl::InvalidArgumentError(absl::StrCat("--spec ", name, ": ", bad.message()));

@@ -134,6 +134,7 @@ absl::StatusOr<v1::ListResultsResponse> PageOf(const Connection& connection,
 // If the server restarts, requests only the current page again: the earlier pages have been
 // printed. Prints nothing before the first page has arrived. `has_names`: also prints the names of
 // the points. They contain the job's id; without them the same points give the same bytes.
+// `options` must have passed CheckSave.
 absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job,
                          const Options& options, bool has_names, std::ostream& out,
                          std::ostream& err) {
@@ -168,7 +169,7 @@ absl::Status ToArrays(NewFile& file, const Options& options, Terminal& terminal)
   return absl::InvalidArgumentError(absl::StrCat("--save: ", options.save, " is not written"));
 }
 
-// Writes the file of --save, and prints its path.
+// Writes the file of --save, and prints its path. `options` must have passed CheckSave.
 absl::Status SavePoints(const Connection& connection, const v1::EnsembleJob& job,
                         const Options& options, bool has_names, Terminal& terminal) {
   NewFile file("--save", options.save);

@@ -77,7 +77,7 @@ void AwaitConnection(grpc::ChannelInterface& channel, const std::stop_token& sto
   }
 }
 
-// The error of a watch that gives up. A busy server answers: then the error is its own.
+// The error of a watch that gives up. If the server was busy, returns the server's own error.
 absl::Status GaveUp(const absl::Status& why, const WatchOptions& options) {
   if (absl::IsResourceExhausted(why)) return why;
   return absl::UnavailableError(absl::StrCat("gave up watching after ",

@@ -16,14 +16,15 @@
 namespace ballpiston::fuzz {
 namespace {
 
-// A specification as proto JSON, as the client reads --spec and the gateway a request.
+// A specification as proto JSON. The client reads --spec in this form, and the gateway reads
+// requests in it.
 void CheckSpecFile(const std::string& json) {
   v1::EnsembleSpec spec, again;
   const absl::Status read = client::ReadJson(json, spec);
-  if (!read.ok()) return Require(absl::IsInvalidArgument(read), "what is wrong is the argument");
+  if (!read.ok()) return Require(absl::IsInvalidArgument(read), "the error is INVALID_ARGUMENT");
   const std::string printed = client::Json(spec);
   if (printed == "null") return;  // a budget beyond what JSON has
-  Require(client::ReadJson(printed, again).ok(), "what is printed can be read");
+  Require(client::ReadJson(printed, again).ok(), "the client can read its own output");
   server::Normalize(again);  // which drops the signs of zeros, as the reader does of -0
   server::Normalize(spec);
   Require(server::DeterministicBytes(again) == server::DeterministicBytes(spec),
@@ -31,7 +32,7 @@ void CheckSpecFile(const std::string& json) {
 }
 
 void RequireTold(const absl::Status& error) {
-  Require(absl::IsInvalidArgument(error), "what is wrong is the argument");
+  Require(absl::IsInvalidArgument(error), "the error is INVALID_ARGUMENT");
   Require(absl::StartsWith(error.message(), "'"), "the text is quoted");
 }
 
@@ -84,7 +85,7 @@ void CheckNumberList(const std::string& text) {
 void CheckListening(const std::string& text) {
   const absl::StatusOr<server::ListenAddress> address = server::ParseListenAddress(text);
   if (!address.ok()) {
-    Require(absl::IsInvalidArgument(address.status()), "what is wrong is the argument");
+    Require(absl::IsInvalidArgument(address.status()), "the error is INVALID_ARGUMENT");
     return Require(absl::StrContains(address.status().message(), "--listen"), "the flag is named");
   }
   const auto again = server::ParseListenAddress(address->Text());
@@ -103,7 +104,7 @@ void CheckServerAddress(const std::string& text) {
     Require(absl::StartsWith(*target, "unix:") || absl::StartsWith(*target, "dns:///"),
             "a target has a scheme");
   } else {
-    Require(absl::IsInvalidArgument(target.status()), "what is wrong is the argument");
+    Require(absl::IsInvalidArgument(target.status()), "the error is INVALID_ARGUMENT");
   }
   CheckListening(text);
 }

@@ -103,7 +103,8 @@ void RequirePage(const Request& request, const std::string& input) {
   Request next = request;
   next.set_page_token(server::NextPageToken(request, start));
   server::RequestCheck of_next;
-  Require(of_next.PageStart(next, kFirst) == start && of_next.ok(), "a token leads back");
+  Require(of_next.PageStart(next, kFirst) == start && of_next.ok(),
+          "a token gives the start for which it was made");
   v1::ListResultsRequest other;
   other.set_parent("ensembleJobs/another");
   other.set_page_token(next.page_token());

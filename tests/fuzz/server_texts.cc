@@ -54,7 +54,7 @@ void CheckAccessList(const std::string& text) {
   if (list.ok()) {
     CheckCalls(*list, text);
   } else {
-    Require(absl::IsInvalidArgument(list.status()), "what is wrong is the argument");
+    Require(absl::IsInvalidArgument(list.status()), "the error is INVALID_ARGUMENT");
     Require(absl::StartsWith(list.status().message(), "--access-file=FILE, line "),
             "flag and line are named");
     RequireSilence(list.status(), text);

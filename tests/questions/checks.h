@@ -9,7 +9,8 @@
 
 namespace ballpiston::questions {
 
-// The rules that decide how to go on with a server: no question computes for ever; no call fails.
+// No question computes for ever; no call fails. If one of these rules is broken, ServerAsker may
+// start a new server.
 inline constexpr char kEndCheck[] = "end", kCallCheck[] = "call";
 
 struct Finding {

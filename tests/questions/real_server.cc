@@ -66,7 +66,8 @@ class Conversation {
     return std::move(report_);
   }
 
-  // Until the state is `wanted`; a finding if the server computes on and on.
+  // Waits until the state is `wanted` or a call fails. Reports a finding if the server uses more
+  // than kMostProcessorSeconds.
   template <typename Wanted>
   absl::StatusOr<v1::EnsembleJob> AwaitState(const std::string& name, Wanted wanted) {
     const double start = server_.ProcessorSeconds();

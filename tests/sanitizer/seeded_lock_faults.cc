@@ -1,6 +1,7 @@
 // Faults on purpose: a member that is changed without its mutex, a function that is called without
-// the mutex it requires, one that is called with the mutex it takes, and two mutexes that are taken
-// in the wrong order. Clang has to report them (scripts/thread-safety.sh).
+// the mutex it requires, a function that locks the mutex and is called while the mutex is held, and
+// two mutexes that are taken in the wrong order. Clang has to report them
+// (scripts/thread-safety.sh).
 #include "server/mutex.h"
 
 namespace ballpiston::server {

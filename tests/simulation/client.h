@@ -104,8 +104,8 @@ class Client {
     explicit operator bool() const { return life_ != nullptr; }
     Life* operator->() const { return life_.get(); }
 
-    // Whether the answer is the success of the call. Other answers are permitted if the server died
-    // before it answered, while calls may fail, and if the job is deleted; and with
+    // Returns whether the call succeeded. Another answer is permitted if the server died first, if
+    // calls may fail now, or if the job was deleted. FAILED_PRECONDITION is permitted only with
     // `if_precondition_fails`, which is then called.
     bool Succeeds(const absl::Status& status,
                   const std::function<void()>& if_precondition_fails = nullptr) {

@@ -94,7 +94,7 @@ class Expectations {
 
   // ---- answers of calls that began when `before` was known ----
 
-  // By a call that may be the first that names the job: its Create may have had no answer.
+  // The answer may be the first that names the job, because Create may have had no answer.
   void Named(const KnownJobs& before, const Question& question, const v1::EnsembleJob& job) {
     const std::string id = *JobIdOf(job.name());
     const auto [known, is_new] = jobs_.try_emplace(id, KnownJob{.question = question});
@@ -120,8 +120,8 @@ class Expectations {
     NoteState(id, job);
   }
 
-  // The job was not found, or was not in the list. Without a violation, a deletion has taken effect
-  // that had no answer.
+  // The job was not found, or was not in the list. A violation, unless a deletion was requested and
+  // has taken effect without an answer.
   void Missed(const std::string& id) {
     if (Known(id).deletions_asked == 0) throw Violation("lost", id, "is not found");
     jobs_.at(id).is_deleted = true;
@@ -157,7 +157,7 @@ class Expectations {
     }
   }
 
-  // A watch sent this state.
+  // An answer or a watch message has this state.
   void Saw(const std::string& id, const KnownJob& before, State state) const {
     const bool is_older = state < before.state || (HasEnded(before.state) && state != before.state);
     if (is_older) {
@@ -248,7 +248,8 @@ class Expectations {
     }
   }
 
-  // Each has the bytes of an undisturbed run, and none is there twice.
+  // Checks that each result has the bytes of an undisturbed run and that no point comes twice.
+  // Returns the number of points.
   int CountPoints(const char* check, const std::string& id,
                   const std::vector<v1::PointResult>& results) {
     std::set<int> points;

@@ -54,7 +54,7 @@ class Life {
 
  private:
   absl::Status Start() {
-    // Two readers, so that calls wait for one.
+    // Two readers, so that calls must wait for a free reader.
     auto store = Store::Open(kStorePath, {.readers = 2, .reserve_bytes = size_t{256} << 10});
     if (!store.ok()) return store.status();
     store_ = *std::move(store);

@@ -9,7 +9,7 @@
 
 namespace ballpiston {
 
-// By scripts/test-cluster.sh, which says what its verbs do. A verb that fails throws
+// Runs scripts/test-cluster.sh, which says what its verbs do. A verb that fails throws
 // std::runtime_error.
 class Cluster {
  public:
@@ -22,7 +22,7 @@ class Cluster {
     Do("start", parameters);
   }
 
-  // Such as Do("kill-node", {"n1"}).
+  // Runs a verb, such as Do("kill-node", {"n1"}).
   void Do(const std::string& verb, const Words& more = {}) const {
     const ProcessResult result = RunProgram({.command = Joined({{script_, verb, path_}, more})});
     if (result.exit_code != 0) throw std::runtime_error(verb + " failed: " + result.err);
@@ -49,8 +49,8 @@ class Cluster {
   const std::string script_ = SourcePath("scripts/test-cluster.sh");
   const TemporaryFolder folder_;
   const std::string path_ = folder_.File("cluster");
-  // A shell that waits for the end of this pipe, and then stops the cluster: when this is
-  // destroyed, and after the end of this process, whatever ends it.
+  // A shell that waits for the end of this pipe. The shell stops the cluster when this object is
+  // destroyed or this process ends for any reason.
   std::unique_ptr<std::FILE, Stop> keeper_;
 };
 

@@ -219,8 +219,9 @@ class Comparison {
             .own_error = error};
   }
 
-  // Compares methods with a truth of at least `fewest_truth_samples`. The truth's time is long
-  // enough for the first run of any engine, which has `fewest_samples`.
+  // Compares methods with a truth. Does nothing if the truth would have fewer samples than
+  // `fewest_truth_samples`. The truth's time is long enough for the first run of any engine, which
+  // has `fewest_samples`.
   void CompareWithTruth(Quantity quantity, double delta, uint64_t fewest_truth_samples,
                         uint64_t fewest_samples, const std::vector<Method>& methods,
                         const PointRuns& runs) const {

@@ -24,12 +24,12 @@ struct PointEstimate {
 struct PointRuns {
   EnsembleSpec spec;  // one point; without model and samples
 
-  // On a processor of about 3 GHz, within a factor of three. For relaxation times only of kLanes.
+  // On a processor of about 3 GHz, within a factor of three. Relaxation times: only by kLanes.
   double PredictedSecondsPerSample(const Method& method) const;
 
   // By the spectrum, for relaxation times only: without samples; `error` is the bound of its error,
-  // and `seconds` the time of one evaluation. The computation of the spectrum (about 0.1 s), which
-  // is done once for all geometries, counts if it is the first one.
+  // and `seconds` the time of one evaluation. The first evaluation includes the time of the
+  // spectrum itself (0.1 s), which is computed once for all geometries.
   PointEstimate Run(const Method& method, uint64_t samples) const;
 
   // By kLanes; with other samples than a run.

@@ -35,8 +35,8 @@ std::optional<uint64_t> HitsTogether(const std::vector<BallAt>& places, uint64_t
   return std::nullopt;
 }
 
-// Empty if an orbit is with its twin to the end. At the largest number of hits this number counts
-// as the horizon of such an orbit.
+// Empty if an orbit stays within kParted of its twin to the end. At the largest number of hits this
+// number counts as the horizon of such an orbit.
 std::optional<TrajectoryHorizon> HorizonWithin(uint64_t hits, const Itineraries& itineraries,
                                                TwinOrbits& twins) {
   TrajectoryHorizon horizon = {.seconds = itineraries.seconds};

@@ -61,8 +61,8 @@ def _connect_again(connection: Connection) -> None:
 
 
 class Attachments:
-    """The streams of a watch: what it has seen, when it attaches again after it lost its server,
-    and when it gives up. All times are in seconds.
+    """The streams of a watch: what the watch has received, when it reconnects, and when it gives
+    up. All times are in seconds.
 
     Attributes:
         request: of the next stream; it has the last resume token.
@@ -103,10 +103,10 @@ class Attachments:
         return pause
 
     def next_pause(self, now: float, least: float = 0.0) -> float | None:
-        """The pause, at least `least`; None if it would end after the time to give up. That counts
-        from the first call, not from the last message: this process itself may have slept since
-        then. Each pause is up to a quarter longer than needed, so that the watchers of a server
-        that died do not return as one."""
+        """The pause, at least `least`; None if it would end after the time to give up. This time
+        counts from the first call of next_pause after a message, not from the message: this process
+        itself may have slept since then. Each pause is up to a quarter longer than needed, so that
+        the watchers of a server that died do not reconnect at the same time."""
         self._lost = now if self._lost is None else self._lost
         pause = max(self._next, least) * random.uniform(1.0, 1.25)
         self._next = min(2 * self._next, self._longest)

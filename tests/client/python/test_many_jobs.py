@@ -88,9 +88,7 @@ def test_a_list_has_all_jobs(client: ballpiston.Client) -> None:
     assert len(client.jobs(labels={"run": "many"})) == 51
 
 
-def test_cancel_by_label_asks_and_takes_no_for_an_answer(
-    home: Home, endless: ballpiston.Job
-) -> None:
+def test_cancel_by_label_cancels_only_after_yes(home: Home, endless: ballpiston.Job) -> None:
     endless.label(run="endless")
     words = [home.programs / "ballpiston", "cancel", "--label", "run=endless"]
     asked = subprocess.run(words, input="n\n", capture_output=True, text=True, check=False)

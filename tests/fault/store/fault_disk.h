@@ -85,7 +85,7 @@ class FaultDisk {
   int next_file_ = 0;
   std::vector<DiskOperation> operations_;
   std::optional<Refusal> refusal_;
-  size_t end_of_refusal_ = 0;  // a number of an operation
+  size_t end_of_refusal_ = 0;  // operations from this number on are not refused
   int64_t capacity_ = std::numeric_limits<int64_t>::max();
   int64_t refusals_ = 0;
 };

@@ -22,9 +22,9 @@ _NAMESPACE = uuid.UUID("6c1f8b0e-4f0b-4c6e-9d43-0c7d1c1a7f11")
 
 
 def answer(client: Client, experiment: str, **question: Any) -> Result:
-    """The result of a question. If the same question was asked before, its job goes on: the ids are
-    tried in order, and if the job of an id failed or was cancelled, or its results have expired,
-    the next id makes a new job."""
+    """The result of a question. If the same question was asked before, its job is used again: the
+    ids are tried in order, and if the job of an id failed or was cancelled, or its results have
+    expired, the next id makes a new job."""
     spec = specification(experiment, **question)
     key = f"{client.status().engine_version} {spec.SerializeToString(deterministic=True)!r}"
     for attempt in itertools.count():
