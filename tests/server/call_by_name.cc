@@ -5,11 +5,17 @@ namespace ballpiston::server {
 using grpc::ByteBuffer;
 using grpc::internal::RpcMethod;
 
+std::string PathOf(const google::protobuf::MethodDescriptor& method) {
+  return "/" + method.service()->full_name() + "/" + method.name();
+}
+
 std::string PathOf(const google::protobuf::Descriptor& request) {
   const google::protobuf::ServiceDescriptor& service = *request.file()->service(0);
-  int i = 0;
-  while (service.method(i)->input_type() != &request) ++i;
-  return "/" + service.full_name() + "/" + service.method(i)->name();
+  for (int i = 0; i < service.method_count(); ++i) {
+    if (service.method(i)->input_type() == &request) return PathOf(*service.method(i));
+  }
+  ADD_FAILURE() << "no method takes a " << request.full_name();
+  return "";
 }
 
 // A unary method is called as a stream of one message.

@@ -17,7 +17,8 @@ inline constexpr char kWatchHealth[] = "/grpc.health.v1.Health/Watch";
 inline constexpr char kReflection[] =
     "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
 
-// The path of the only method that takes such a request. Each .proto file has one service.
+std::string PathOf(const google::protobuf::MethodDescriptor& method);
+// The path of the first method that takes such a request. Each .proto file has one service.
 std::string PathOf(const google::protobuf::Descriptor& request);
 
 // A request of a health watch, encoded by hand: an empty field 1 asks for the whole server.
@@ -34,8 +35,9 @@ class NamedCall {
             const std::vector<std::string>& authorization = {});
   ~NamedCall();  // cancels it, if it has not ended
 
-  void Send(const std::string& bytes);                       // the only request, serialized
-  void AwaitAnswer() { stream_->WaitForInitialMetadata(); }  // the first one has been sent
+  void Send(const std::string& bytes);  // the only request, serialized
+  // Waits until the server sends the first answer.
+  void AwaitAnswer() { stream_->WaitForInitialMetadata(); }
   std::optional<std::string> Read();  // the next answer; empty at the end of the call
   grpc::Status Finish();              // waits until the server has ended the call
 

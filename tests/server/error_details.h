@@ -15,6 +15,7 @@ struct ErrorDetails {
   std::string domain;
   std::map<std::string, std::string> metadata;
   std::vector<std::string> fields;  // the fields of the violations in google.rpc.BadRequest
+  int64_t retry_seconds = 0;        // from google.rpc.RetryInfo
 };
 
 inline ErrorDetails DetailsOf(const grpc::Status& status) {
@@ -24,11 +25,13 @@ inline ErrorDetails DetailsOf(const grpc::Status& status) {
   for (const auto& any : rpc.details()) {
     google::rpc::ErrorInfo info;
     google::rpc::BadRequest request;
+    google::rpc::RetryInfo retry;
     if (any.UnpackTo(&info)) {
       details.reason = info.reason();
       details.domain = info.domain();
       details.metadata.insert(info.metadata().begin(), info.metadata().end());
     }
+    if (any.UnpackTo(&retry)) details.retry_seconds = retry.retry_delay().seconds();
     if (!any.UnpackTo(&request)) continue;
     for (const auto& violation : request.field_violations()) {
       details.fields.push_back(violation.field());

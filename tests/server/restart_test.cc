@@ -77,19 +77,20 @@ TEST(Restart, AnotherEngineComputesAllAgain) {
 
 TEST(Restart, AJobWithDamagedRowsFailsAndTheServerStays) {
   using Damage = std::function<void(const std::string& store, const std::string& job)>;
-  std::vector<Damage> damages;
+  std::map<std::string, Damage> damages;
   for (const char* sql : {"UPDATE jobs SET message = x'ff'", "UPDATE jobs SET grid = x'ff'",
                           "UPDATE jobs SET message = x''", "UPDATE checkpoints SET record = x'ff'",
                           "UPDATE results SET point = 7", "UPDATE results SET point = -1"}) {
-    damages.push_back([sql](const std::string& store, auto) { ChangeStore(store, sql); });
+    damages[sql] = [sql](const std::string& store, auto) { ChangeStore(store, sql); };
   }
   for (const int32_t points : {-1, 1, std::numeric_limits<int32_t>::max()}) {
-    damages.push_back([points](const std::string& store, const std::string& job) {
+    damages[absl::StrCat(points, " points")] = [points](const std::string& store,
+                                                        const std::string& job) {
       ChangeJob(store, job, [&](EnsembleJob& of) { of.mutable_progress()->set_points(points); });
-    });
+    };
   }
-  for (const Damage& damage : damages) {
-    SCOPED_TRACE(&damage - damages.data());
+  for (const auto& [text, damage] : damages) {
+    SCOPED_TRACE(text);
     const TemporaryFolder folder;
     const std::string name = LeaveUnfinished(folder);
     damage(folder.File("store.sqlite3"), name);
@@ -97,6 +98,7 @@ TEST(Restart, AJobWithDamagedRowsFailsAndTheServerStays) {
     const EnsembleJob job = server.AwaitEnd(name);
     EXPECT_EQ(job.name(), name);
     EXPECT_EQ(job.state(), EnsembleJob::FAILED);
+    EXPECT_EQ(job.progress().points_done(), 1);  // the second point is not computed
     EXPECT_NE(job.error().message(), "");
     server.Succeeded(Equilibrium(1, 5));
   }

@@ -91,7 +91,7 @@ class TestClient {
 struct StartedServer {
   explicit StartedServer(const TestServerOptions& options);
 
-  const TemporaryFolder folder;  // if the options name no other
+  const TemporaryFolder folder;  // has the data if the options name no data folder
   std::unique_ptr<BallpistonServer> process;
 };
 

@@ -47,8 +47,8 @@ TEST(StartStop, OtherFilesAtASocketsPathStay) {
   close(descriptor);
 }
 
-// A server that waited for these clients would stop after the time to drain, which is long. It
-// drops two blocks that never end, and begins no other one.
+// A server that waited for these clients would stop after the time to drain, which is long. The
+// server drops two blocks that never end, and begins no other block.
 TEST(StartStop, HungClientsAndEndlessBlocksDoNotDelayAStop) {
   const LaboratoryFiles files;
   Gate gate;

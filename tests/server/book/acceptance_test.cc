@@ -9,6 +9,12 @@ namespace {
 
 v1::EnsembleSpec Question(uint64_t seed = 1) { return Equilibrium(2, 5, seed); }
 
+v1::CreateEnsembleJobRequest Labelled(v1::CreateEnsembleJobRequest request, const std::string& key,
+                                      const std::string& value) {
+  (*request.mutable_labels())[key] = value;
+  return request;
+}
+
 class AcceptanceTest : public BookTest {
  protected:
   // Expects that the request creates a new job.
@@ -101,13 +107,16 @@ void ChangeEachField(google::protobuf::Message& message,
 
 // A retry may have other labels. A question has a whole specification, a family has one without the
 // number that its target asks for; a job with a budget has neither.
-TEST(Payload, QuestionAndFamilyDependOnTheirFieldsOnly) {
+TEST(Acceptance, PayloadQuestionAndFamilyDependOnTheirFieldsOnly) {
   v1::CreateEnsembleJobRequest request = CreateRequest(Question(), kUuid);
   const auto question_of = [&](const char* engine) { return QuestionOf(request.spec(), engine); };
   const auto family_of = [&](const char* engine) { return FamilyOf(request.spec(), engine); };
-  const std::string payload = PayloadOf(request), family = family_of("1");
-  std::set<std::string> payloads = {payload}, questions = {question_of("1"), family},
-                        families = {family};
+  const std::string payload = PayloadOf(request);
+  const std::string family = family_of("1");
+  std::set<std::string> payloads = {payload};
+  std::set<std::string> questions = {question_of("1"), family};
+  std::set<std::string> families = {family};
+  EXPECT_EQ(PayloadOf(Labelled(request, "figure", "3")), payload);
   for (const std::string& other : {question_of("2"), family_of("2")}) {
     EXPECT_TRUE(questions.insert(other).second);
   }
@@ -178,12 +187,6 @@ TEST_F(AcceptanceTest, ARequestIdOfACancellationIsNotThatOfAnotherRequest) {
   EXPECT_THAT(book_->Cancel(kAnn, made, id), reused);
   EXPECT_THAT(Create(kAnn, CreateRequest(Question(), id)), reused);
   EXPECT_EQ(Id(kAnn, CreateRequest(Question(kHeldSeed), kUuid)), made);
-}
-
-v1::CreateEnsembleJobRequest Labelled(v1::CreateEnsembleJobRequest request, const std::string& key,
-                                      const std::string& value) {
-  (*request.mutable_labels())[key] = value;
-  return request;
 }
 
 TEST_F(AcceptanceTest, ARetryAndAnAnswerFromTheStoreAddLabelsToTheEarlierJob) {

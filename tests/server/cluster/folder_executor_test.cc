@@ -14,9 +14,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// One point of six chunks and more. A lease has one.
-EnsembleSpec SomeSpec() { return SpecOf(kFirstHit, Model::kBilliard, 100'000); }
-
 class FolderExecutorTest : public testing::Test {
  protected:
   FolderExecutorTest() { Restart(); }
@@ -35,7 +32,7 @@ class FolderExecutorTest : public testing::Test {
                                .prepare = [this] { return prepare_; }});
   }
 
-  JournalPointer Add() { return stepped_->Add(1, SomeSpec()); }
+  JournalPointer Add() { return stepped_->Add(1, spec_); }
   JournalPointer Begin() {
     JournalPointer journal = Add();
     EXPECT_TRUE(stepped_->local_.TakeTurn());  // opens the point
@@ -98,11 +95,13 @@ class FolderExecutorTest : public testing::Test {
     }
     ASSERT_TRUE(journal.outcome);
     EXPECT_OK(*journal.outcome);
-    const auto experiment = PointExperiment::Create(SomeSpec(), 0);
+    const auto experiment = PointExperiment::Create(spec_, 0);
     EXPECT_TRUE(journal.finished.at(0) == FoldPoint(*experiment));
     EXPECT_EQ(journal.merged.at(0), experiment->plan().samples());
   }
 
+  // One point of six chunks and more. A lease has one.
+  EnsembleSpec spec_ = SpecOf(kFirstHit, Model::kBilliard, 100'000);
   FakeFiles files_;
   absl::Status flush_, prepare_;
   std::optional<SteppedScheduler> stepped_;
@@ -243,6 +242,17 @@ TEST_F(FolderExecutorTest, DamagedFilesAreRefusedAndComputedAgain) {
 const ClusterOptions kNoTimeOut = {
     .timeout = milliseconds(0), .look = milliseconds(0), .least_waiting = 2};
 
+TEST_F(FolderExecutorTest, ASilentWorkerLosesItsLease) {
+  Restart(kNoTimeOut);
+  const auto journal = Begin();
+  const std::string taken = Take();
+  executor_->Look();
+  EXPECT_THAT(In("done"), ElementsAre(taken + ".lost"));
+  executor_->Look();
+  EXPECT_EQ(executor_->Status().lost_leases, 1);
+  ComputeAll(*journal);
+}
+
 TEST_F(FolderExecutorTest, WhileThereIsNoWorkerTheThreadsComputeAndOneLeaseWaits) {
   Restart(kNoTimeOut);
   Begin();
@@ -325,6 +335,12 @@ TEST_F(FolderExecutorTest, ALeaseGoesBackIfMemoryRunsOutWhileItIsLaid) {
   executor_->Look();
   EXPECT_EQ(executor_->Status().problem, "");
   ComputeAll(*journal);
+}
+
+// A lease has the states from which its trajectories continue.
+TEST_F(FolderExecutorTest, TrajectoriesContinueInLaterLeases) {
+  spec_ = SpecOf(kGasConduction, Model::kMarkov, 600);
+  ComputeAll(*Begin());
 }
 
 // ---- many workers ----

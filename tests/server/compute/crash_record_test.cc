@@ -179,29 +179,31 @@ class FatalSignalsDeathTest : public testing::Test {
     }).join();
   }
 
-  // What the next process finds.
-  int Deaths() const { return CrashRecord(folder_.path(), {}).Deaths(kFirst); }
+  // Expects that the next process finds so many deaths. A test calls this function once, because
+  // the process that dies runs the test from its beginning, in an empty folder.
+  void ExpectDeaths(const std::function<void()>& fault, int deaths) {
+    EXPECT_DEATH(DieInATurn(fault), "");
+    EXPECT_EQ(CrashRecord(folder_.path(), {}).Deaths(kFirst), deaths);
+  }
 
  private:
   const DeathTestFolder folder_;
 };
 
-TEST_F(FatalSignalsDeathTest, OnlyAFaultOfTheProcessItselfCounts) {
-  const struct {
-    std::function<void()> fault;
-    int deaths;
-  } rows[] = {{[] { Overflow(1); }, 1},
-              {[] { abort(); }, 1},
-              {[] { raise(SIGKILL); }, 0},
-              {[] {
-                 std::system(absl::StrCat("kill -SEGV ", getpid()).c_str());
-                 pause();
-               },
-               0}};
-  for (const auto& [fault, deaths] : rows) {
-    EXPECT_DEATH(DieInATurn(fault), "");
-    EXPECT_EQ(Deaths(), deaths);
-  }
+TEST_F(FatalSignalsDeathTest, AStackOverflowCounts) {
+  ExpectDeaths([] { Overflow(1); }, 1);
+}
+TEST_F(FatalSignalsDeathTest, AnAbortCounts) { ExpectDeaths(abort, 1); }
+TEST_F(FatalSignalsDeathTest, AKillIsIgnored) {
+  ExpectDeaths([] { raise(SIGKILL); }, 0);
+}
+TEST_F(FatalSignalsDeathTest, ASignalFromAnotherProcessIsIgnored) {
+  ExpectDeaths(
+      [] {
+        std::system(absl::StrCat("kill -SEGV ", getpid()).c_str());
+        pause();
+      },
+      0);
 }
 
 }  // namespace

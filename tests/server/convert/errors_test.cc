@@ -26,11 +26,11 @@ TEST(Errors, SayHowLongToWaitWhereWaitingHelps) {
         StoreFailure(absl::UnavailableError("fails")), limit("TOO_MANY_CALLS"),
         limit("TOO_MANY_STREAMS"), limit("TOO_MANY_JOBS"), limit("TOO_MANY_ACTIVE_POINTS"),
         limit("TOO_MANY_STORED_BYTES")}) {
-    EXPECT_GT(RetryDelayOf(RpcStatus(cured)), absl::ZeroDuration()) << cured;
+    EXPECT_GT(DetailsOf(cured).retry_seconds, 0) << cured;
   }
   for (const absl::Status& lasting :
        {limit("TOO_MANY_POINTS"), StoreFailure(absl::DataLossError("damaged")), JobNotFound("x")}) {
-    EXPECT_EQ(RetryDelayOf(RpcStatus(lasting)), absl::ZeroDuration()) << lasting;
+    EXPECT_EQ(DetailsOf(lasting).retry_seconds, 0) << lasting;
   }
 }
 

@@ -65,8 +65,7 @@ class AccessTable : public ::testing::Test {
   }
   grpc::Status Ask(const MethodDescriptor& method, const std::string& job,
                    const std::vector<std::string>& shown) {
-    return CallByName(server_.channel(), PathOf(*method.input_type()), RequestFor(method, job),
-                      shown);
+    return CallByName(server_.channel(), PathOf(method), RequestFor(method, job), shown);
   }
 
   LaboratoryFiles files_;

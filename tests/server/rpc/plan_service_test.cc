@@ -54,6 +54,9 @@ TEST_F(PlanServiceTest, EveryExperimentHasItsLadderCheapestFirst) {
     SCOPED_TRACE(kind->name);
     ASSERT_EQ(plan.points_size(), 1);
     EXPECT_EQ(plan.point_count(), 1);
+    // On one core the store's thread adds some 10 us.
+    EXPECT_GE(plan.time(), plan.work() / 2);
+    EXPECT_LE(plan.time(), plan.work() + 1e-4);
     const v1::PointPlan& point = plan.points(0);
     EXPECT_NE(point.reason(), "");
     EXPECT_EQ(point.parameters().delta(), question.grid().delta(0));
@@ -110,9 +113,6 @@ TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandOfItsPoints) {
   }
   EXPECT_NEAR((plan.work() - FirstPoint()) / (100 * WorkOfPoints(plan)), 1, 1e-9);
   EXPECT_EQ(plan.workers(), 2);
-  // The store's thread may share the workers' cores.
-  EXPECT_GE(plan.time(), plan.work() / 2);
-  EXPECT_LE(plan.time(), plan.work() + 0.1);
   EXPECT_EQ(server_->List().jobs_size(), 0);  // a plan creates no job
 }
 

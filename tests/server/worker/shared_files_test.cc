@@ -59,11 +59,15 @@ TEST_F(FolderFilesTest, LinksAndPipesAreNotRead) {
 TEST_F(FolderFilesTest, AFullDiskLeavesTheFileAsItWas) {
   ASSERT_OK(files_.Create("todo/a", "one").status());
   const std::string large(2000, 'x');
+  absl::Status appended;
+  absl::Status created;
   {
     const ScopedLimit full_disk(RLIMIT_FSIZE, 1000);
-    EXPECT_THAT(files_.Append("todo/a", large), StatusIs(Code::kResourceExhausted));
-    EXPECT_THAT(files_.Create("todo/b", large), StatusIs(Code::kResourceExhausted));
+    appended = files_.Append("todo/a", large);
+    created = files_.Create("todo/b", large).status();
   }
+  EXPECT_THAT(appended, StatusIs(Code::kResourceExhausted));
+  EXPECT_THAT(created, StatusIs(Code::kResourceExhausted));
   EXPECT_THAT(files_.Read("todo/a", 0), IsOkAndHolds("one"));
   EXPECT_THAT(files_.Stamp("todo/b"), StatusIs(Code::kNotFound));
 }
