@@ -136,7 +136,7 @@ TEST(Acceptance, PayloadQuestionAndFamilyDependOnTheirFieldsOnly) {
 }
 
 // The default estimate and default values may be named or left out, and columns have no order.
-TEST(Question, IsThatOfAnotherTextWithTheSameMeaning) {
+TEST(Question, TextsWithTheSameMeaningGiveTheSameQuestion) {
   const auto all_of = [](const std::string& text) {
     const auto spec = FromText<v1::EnsembleSpec>("grid { rho: 0.53 delta: 0.1 } " + text);
     return std::tuple(QuestionOf(spec, "1"), FamilyOf(spec, "1"), PayloadOf(CreateRequest(spec)));

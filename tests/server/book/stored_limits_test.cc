@@ -158,8 +158,8 @@ TEST_F(StoredLimitsTest, AWatchEndsWithAnErrorIfResultsExpireMeanwhile) {
   EXPECT_EQ(ReasonOf(Watched(id, "", expire).status()), "RESULTS_EXPIRED");
 }
 
-// The principal with the most bytes makes room. Its oldest results expire first. Then expired jobs
-// are deleted. If pinned jobs still take too much, no job is accepted.
+// The principal with the most bytes loses results first. Its oldest results expire first. Then
+// expired jobs are deleted. If pinned jobs still take too much, no job is accepted.
 TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
   constexpr int64_t kBound = 600'000;
   Start({.max_store_bytes = kBound});

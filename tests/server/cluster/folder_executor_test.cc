@@ -50,7 +50,7 @@ class FolderExecutorTest : public testing::Test {
     return lease + ".w";
   }
   std::string Take() { return Take(In("todo")[0]); }
-  // The same, and computes it.
+  // Takes the first lease and computes it.
   std::string Finished() {
     const std::string taken = Take();
     Compute(taken);

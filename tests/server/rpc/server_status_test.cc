@@ -72,7 +72,7 @@ TEST_F(ServerStatusTest, AnExceptionEndsTheCallOnly) {
 }
 
 // gRPC's own retries obey the metadata.
-TEST_F(ServerStatusTest, ALimitThatWaitingCuresTellsHowLong) {
+TEST_F(ServerStatusTest, ATemporaryLimitSaysWhenToRetry) {
   const auto metadata = [this](const char* reason) {
     grpc::ServerContext context;
     ServeCall(context_, context, {"CreateEnsembleJob", Role::kSubmit},

@@ -31,7 +31,8 @@ class TraceServiceTest : public testing::Test {
   RunningServer server_;
 };
 
-// A free time is that since the last event of the same kind: a pair has one ball and one piston.
+// A free time is the time since the last event of the same kind: a pair has one ball and one
+// piston.
 TEST_F(TraceServiceTest, TheStartComesFirstThenAsManyEventsAsAsked) {
   for (const int64_t events : {1, kEventsOfMessage, kEventsOfMessage + 1, 1000}) {
     const auto messages = Trace(TraceRequest(events));

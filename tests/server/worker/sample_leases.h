@@ -23,8 +23,8 @@ Lease LeaseOf(const EnsembleSpec& spec, uint64_t first = 0, uint64_t end = 0);
 // The record of the lease, from some server.
 storage::Lease RecordOf(const Lease& lease, double touch_seconds = 20);
 
-// The chunks of a lease in order, as a worker computes them: block by block, with what the lease
-// has of its first chunk.
+// The chunks of a lease in order, as a worker computes them: block by block, after the blocks of
+// the first chunk that the lease already has.
 std::vector<ChunkResult> ComputedChunks(const Lease& lease);
 
 // All reports in the file of a lease, merged into one.
