@@ -87,6 +87,24 @@ TEST(Orbits, PauseEndsARun) {
   }
 }
 
+// In single precision the lanes cannot resolve a cell that nearly vanishes.
+TEST(Orbits, EscapesInLanesAreReported) {
+  const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-5, 1);
+  class UntilAnEscape : public RecordedCollisions {
+   public:
+    using RecordedCollisions::RecordedCollisions;
+    AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+      has_escaped |= collision.escaped;
+      return RecordedCollisions::Collide(orbit, collision);
+    }
+    bool Pause() override { return has_escaped; }
+    bool has_escaped = false;
+  };
+  UntilAnEscape single(geometry, 100'000, 20);
+  EXPECT_FALSE(single.Run(Engine::kLanesSingle, geometry, 100'000));
+  EXPECT_TRUE(single.has_escaped);
+}
+
 class CollisionsWithin : public RecordedCollisions {
  public:
   CollisionsWithin(double limit, const PairGeometry& geometry, uint64_t orbits, size_t collisions)
