@@ -107,14 +107,20 @@ TEST(Orbits, EscapesInLanesAreReported) {
   class UntilAnEscape : public CollisionsWithin {
    public:
     using CollisionsWithin::CollisionsWithin;
-    bool Pause() override {
+    bool has_escaped() const {
       return std::ranges::any_of(by_orbit(), [](const auto& collisions) {
         return !collisions.empty() && collisions.back().escaped;
       });
     }
+    bool Pause() override { return ++looks_ == 10'000 || has_escaped(); }
+
+   private:
+    int looks_ = 0;
   };
   const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-5, 1);
-  EXPECT_FALSE(UntilAnEscape(10, geometry, 300, 20).Run(Engine::kLanesSingle, geometry, 300));
+  UntilAnEscape single(10, geometry, 300, 20);
+  EXPECT_FALSE(single.Run(Engine::kLanesSingle, geometry, 300));
+  EXPECT_TRUE(single.has_escaped());
 }
 
 // In all engines and vector widths every orbit is the same as without a limit up to the first
