@@ -47,7 +47,8 @@ double KolmogorovSmirnov(std::vector<double> sample, Below below) {
 }
 
 // Kolmogorov's and Smirnov's for two samples: the distance of the first one from the distribution
-// function of the second one, times sqrt(N M/(N + M)). It exceeds 2.3 in 5e-5 of all cases.
+// function of the second one, times sqrt(N M/(N + M)). It exceeds 2.3 in 5e-5 of all cases. No two
+// values of the samples may be equal.
 inline double KolmogorovSmirnov(const std::vector<double>& first, std::vector<double> second) {
   std::ranges::sort(second);
   const auto n = static_cast<double>(first.size()), m = static_cast<double>(second.size());

@@ -41,9 +41,9 @@ double Signal(const Estimate& estimate) {
 // 10 comparisons with the noise at most: one false alarm in 1600 choices of the seed.
 TEST(MarkovProperty, HoldsInTheLimitOfSmallDelta) {
   const std::vector<Estimates> measured = Measured();
-  const double most_noise = 20 * std::sqrt(static_cast<double>(Collisions()) / 1e6);
+  const double least_signal = 20 * std::sqrt(static_cast<double>(Collisions()) / 1e6);
   for (const char* name : {"memory_divergence", "memory_correlation"}) {
-    EXPECT_GT(Signal(measured[0].at(name)), most_noise) << name;
+    EXPECT_GT(Signal(measured[0].at(name)), least_signal) << name;
   }
   for (size_t i = 0; i < measured.size(); ++i) {
     SCOPED_TRACE(kDeltas[i]);

@@ -1,4 +1,4 @@
-// The fingerprints of the experiments of golden_test.cc, from the last intended change.
+// The fingerprints of the experiments and walkers of golden_test.cc, from the last intended change.
 // If the bits differ, this command prints the new lines:
 //   statistical_test --gtest_filter='*Golden*' | grep '^{'
 #pragma once
@@ -38,6 +38,8 @@ inline const std::map<std::string_view, uint64_t> kGoldenBits = {
     {"lanes single, first-hit", 0x5543c1ba4b0a0a8e},
     {"lanes single, lyapunov", 0x5f89c14acd3606c1},
     {"lanes single, markov-property", 0x347f9ef3dd66da1a},
+    {"jump process, walkers after 1 jumps", 0x0049c16fa40bbb71},
+    {"jump process, walkers after 10 jumps", 0x52df7e3171c109d0},
 };
 
 }  // namespace ballpiston

@@ -101,6 +101,28 @@ class CollisionsWithin : public RecordedCollisions {
   double limit_;
 };
 
+// In single precision the lanes cannot resolve a cell that nearly vanishes. With a limit an orbit
+// that only waits too long has not escaped.
+TEST(Orbits, EscapesInLanesAreReported) {
+  class UntilAnEscape : public CollisionsWithin {
+   public:
+    using CollisionsWithin::CollisionsWithin;
+    bool has_escaped() const {
+      return std::ranges::any_of(by_orbit(), [](const auto& collisions) {
+        return !collisions.empty() && collisions.back().escaped;
+      });
+    }
+    bool Pause() override { return ++looks_ == 10'000 || has_escaped(); }
+
+   private:
+    int looks_ = 0;
+  };
+  const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-5, 1);
+  UntilAnEscape single(10, geometry, 300, 20);
+  EXPECT_FALSE(single.Run(Engine::kLanesSingle, geometry, 300));
+  EXPECT_TRUE(single.has_escaped());
+}
+
 // In all engines and vector widths every orbit is the same as without a limit up to the first
 // collision after the limit, and ends there.
 TEST(Orbits, TimeLimitChangesNothingWithinIt) {

@@ -98,6 +98,7 @@ TEST(EnsembleSpec, HugeGridsAreRejectedWithoutExpansion) {
 
 TEST(EnsembleSpec, TargetsAreChecked) {
   ExpectViolations({
+      {"first-hit samples=1"},
       {"first-hit samples=1e12"},
       {"first-hit samples=1e13", {"target.samples: permitted: 1 to 1000000000000"}},
       {"gas-conduction delta=1e-10 collisions=1e6 model=billiard",

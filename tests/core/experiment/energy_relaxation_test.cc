@@ -59,11 +59,14 @@ TEST(EnergyRelaxation, RelaxationTimeExistsAwayFromTheMeanEnergy) {
                                         {0.2, true}}) {
     EXPECT_EQ(HasRelaxationTime(epsilon), exists);
     for (const Model model : {Model::kSpectrum, Model::kMarkov, Model::kBilliard}) {
-      const std::vector<std::string> remarks = answered(epsilon, model).remarks;
+      const PointSummary summary = answered(epsilon, model);
       const auto is_said = [](const std::string& remark) {
         return remark.starts_with("there is no relaxation_time");
       };
-      EXPECT_EQ(std::ranges::count_if(remarks, is_said), exists ? 0 : 1);
+      EXPECT_EQ(std::ranges::count_if(summary.remarks, is_said), exists ? 0 : 1);
+      if (model == Model::kBilliard) continue;
+      EXPECT_EQ(Named("spectral_gap", summary.estimates).value,
+                RelaxationSpectrum::Get().Gap().value);
     }
     const PointSummary summary = answered(epsilon, Model::kSpectrum);
     const std::vector<Estimate>& limit = summary.estimates;
@@ -73,9 +76,14 @@ TEST(EnergyRelaxation, RelaxationTimeExistsAwayFromTheMeanEnergy) {
     if (exists) names.insert(names.begin(), "relaxation_time");
     EXPECT_EQ(NamesOf(summary), names);
     EXPECT_EQ(limit[0].limit, limit[0].value);
+    const auto& rates = RelaxationSpectrum::Get().IsolatedRates();
+    for (size_t i = 0; i < rates.size(); ++i) {
+      EXPECT_EQ(limit.at(limit.size() - rates.size() + i).value, rates[i].value);
+    }
     if (!epsilon) {
       const double unit = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston / 4;
       EXPECT_NEAR(limit[0].value / unit, 2.165550673728, 1e-11);
+      EXPECT_LT(*limit[0].standard_error / unit, 1e-10);
     } else if (exists) {
       EXPECT_NEAR(limit[1].value, limit[0].value * (*epsilon - kMeanPistonEnergy), 1e-9);
     }

@@ -138,6 +138,7 @@ TEST(GasEquilibrium, ExpectedProbabilitiesMatchTheThermalLaws) {
     const Histogram& speeds = summary.histograms[i].histogram;
     EXPECT_EQ(speeds.Total(), 400u * 3);
     ASSERT_EQ(laws.at(i).size(), speeds.counts.size());
+    EXPECT_NEAR(std::reduce(laws[i].begin(), laws[i].end()), 1, 1e-13);
     const auto below = [i](double v) { return i == 0 ? -std::expm1(-v * v / 4) : std::erf(v / 2); };
     for (size_t bin = 0; bin + 1 < laws[i].size(); ++bin) {
       EXPECT_NEAR(laws[i][bin], below(speeds.Edge(bin + 1)) - below(speeds.Edge(bin)), 1e-14);

@@ -1,5 +1,6 @@
 // Which estimates have a standard error, and what stands in its place.
 #include "core/closed_form/ingoing_law.h"
+#include "core/experiment/expected_returns.h"
 #include "core/experiment/returns.h"
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
@@ -109,6 +110,26 @@ TEST(StandardErrors, OfReturnsToASlowPistonNeedLongReturns) {
   }
   EXPECT_TRUE(HasError("mean_sigma", question + "1"));
   EXPECT_TRUE(HasError("mean_cos_alpha", question + "1"));
+}
+
+// The measured share of orbits that meet: whose energy has left its bin at the end. One in 61 of
+// those is back in it. Each body is at rest and slow. Ratios are 1 to 1.36, with errors up to
+// 0.026.
+TEST(StandardErrors, ShareThatMeetsIsAboutTheMeasuredOne) {
+  for (const auto& [delta, epsilon] :
+       {std::pair(0.1, 0.0), {0.1, 1e-6}, {0.1, 0.4999}, {0.2, 0.5}}) {
+    const NamedHistogram end =
+        Answered(absl::StrCat("energy-relaxation model=billiard samples=10000 delta=", delta,
+                              " epsilon=", epsilon))
+            .histograms.back();
+    const auto bin = static_cast<size_t>(epsilon / end.histogram.upper *
+                                         static_cast<double>(end.histogram.counts.size()));
+    const uint64_t stayed = end.histogram.counts.at(std::min(bin, end.histogram.counts.size() - 1));
+    const double ratio = ShareThatMeets(PaperGeometry(delta), epsilon, *end.time) /
+                         (1 - static_cast<double>(stayed) / 10000);
+    EXPECT_GT(ratio, 0.88) << delta << " " << epsilon;
+    EXPECT_LT(ratio, 1.45) << delta << " " << epsilon;
+  }
 }
 
 // In a small cell most meetings of a slow ball are two collisions at once, and the second one

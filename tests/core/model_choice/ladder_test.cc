@@ -109,11 +109,21 @@ TEST(Ladder, TheLimitAnswersWhereItsBoundIsWithinTheTolerance) {
   EXPECT_GT(by_limit, 50);
 }
 
+// The conductivity of a ring of jump processes over that of the infinite chain, less 1
+// (docs/research/conductivity.md).
+TEST(Ladder, TheSpectrumsConductivityHasTheErrorOfSmallRings) {
+  for (const auto& [cells, difference] : {std::pair(3, 1.56e-4), {5, 3.2e-5}, {6, 1.6e-5}}) {
+    const std::string ring = "gas-equilibrium rho=0.53 delta=1e-5 estimate=conductivity cells=";
+    EXPECT_GT(BoundOf(Asked(absl::StrCat(ring, cells))), difference) << cells;
+  }
+}
+
 // The errors in a plan's table are those of the answer, and of the named estimate.
 TEST(Ladder, ThePlanRefersToTheNamedEstimate) {
-  for (const char* question :
-       {"energy-relaxation delta=0.01 tolerance=0.01", "energy-relaxation delta=0.01 model=markov",
-        "gas-equilibrium delta=0.01 tolerance=0.05 estimate=conductivity"}) {
+  for (const auto& [question, subject] :
+       {std::pair("energy-relaxation delta=0.01 tolerance=0.01", "energy-relaxation"),
+        {"energy-relaxation delta=0.01 model=markov", "energy-relaxation"},
+        {"gas-equilibrium delta=0.01 tolerance=0.05 estimate=conductivity", "conductivity"}}) {
     const EnsembleSpec spec = Asked(question);
     const Ladder ladder = Planned(spec);
     EXPECT_EQ(ladder.answer.model_error, BoundOf(spec));
@@ -123,7 +133,7 @@ TEST(Ladder, ThePlanRefersToTheNamedEstimate) {
     }
     EXPECT_EQ(ladder.rungs[1].statistical_error, 0);
     EXPECT_FALSE(ladder.rungs[0].answers);
-    EXPECT_THAT(ladder.rungs[0].reason, StartsWith("there is no closed form for "));
+    EXPECT_EQ(ladder.rungs[0].reason, absl::StrCat("there is no closed form for ", subject));
   }
   const Ladder of_rate =
       Planned(Asked("gas-equilibrium delta=0.01 tolerance=0.05 estimate=exchange_rate"));
@@ -237,9 +247,10 @@ TEST(Ladder, SamplesAreThoseThatTheTargetNeeds) {
   const std::string relaxation = "energy-relaxation";
   for (const Model model : {Model::kMarkov, Model::kBilliard, Model::kBilliardReference}) {
     EXPECT_EQ(rung(relaxation + " samples=123", model).samples, 123);
+    // A sample has 40 collisions.
     for (const auto& [collisions, samples] : {std::pair(1, 1), {4000, 100}, {4001, 101}}) {
       EXPECT_EQ(rung(absl::StrCat(relaxation, " collisions=", collisions), model).samples, samples);
-    }  // of 40 collisions each
+    }
     EXPECT_EQ(rung(relaxation, model).samples, kDefaultSamples);
     const Rung to_tolerance = rung(relaxation + " tolerance=0.002", model);
     EXPECT_LE(*to_tolerance.statistical_error, 0.002);
@@ -353,6 +364,7 @@ TEST(Ladder, AToleranceBelowTheModelsErrorIsRejected) {
         "gas-equilibrium estimate=conductivity delta=0.03 cells=1 model=markov tolerance=1e-9",
         // The tolerance of the jump process is that of its samples.
         "energy-relaxation delta=0.2 model=markov tolerance=0.01",
+        "energy-relaxation delta=0.2 tolerance=1e-5",
         // AUTO answers by the spectrum, which takes no samples.
         "energy-relaxation delta=1e-6 tolerance=1e-8 precision=single",
         "energy-relaxation delta=0.01 tolerance=0.01 model=spectrum"}) {
