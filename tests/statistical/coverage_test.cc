@@ -26,7 +26,7 @@ struct OfAnEstimate {
 
 using RunsByName = std::map<std::string, OfAnEstimate>;
 
-// Of Student's t; very many for a normal law.
+// Degrees of freedom of Student's t. 1e6 stands for a normal law.
 double FreedomOf(const Estimate& estimate) {
   return estimate.batches == 0 ? 1e6 : static_cast<double>(estimate.batches) - 1;
 }

@@ -115,7 +115,7 @@ TEST(ElementaryFunctions, AnglesOnAxesAndDiagonals) {
   EXPECT_EQ(Atan2(0.0, 0.0), 0);
 }
 
-TEST(ElementaryFunctions, ExactValues) {
+TEST(ElementaryFunctions, SimpleValuesAreExact) {
   for (const double n : {0.0, 1e-300, 0.5, 1.0, 1000.0}) EXPECT_EQ(Power(1, n), 1);
   for (const double base : {1e-290, 0.1, 0.75, 1 - 0x1p-53}) {
     EXPECT_EQ(Power(base, 0), 1);

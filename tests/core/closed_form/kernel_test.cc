@@ -22,7 +22,8 @@ Quad KernelOverSigns(double ep, Quad ep_out) {
   return sum / (4 * QuadPi() * sqrt(ep_out) * sqrt(eb - ep_out));
 }
 
-// Anywhere; where the ball keeps little energy; close to (1/4, 1/4), where 1/2 - ep loses a bit.
+// Random energies: anywhere, where the ball keeps little energy, and close to (1/4, 1/4), where
+// 1/2 - ep loses a bit.
 TEST(Kernel, AccurateAtRandomEnergies) {
   std::mt19937_64 random(20240607);
   std::uniform_real_distribution<double> exponent(-17, 0), unit(0, 1);
@@ -76,8 +77,8 @@ Quad CurrentZero() {
   return low;
 }
 
-// Anywhere, next to the ends and the middle, where the printed arcsine is steep, and where the
-// current passes through its zero.
+// Random energies: anywhere, next to the ends and the middle, where the printed arcsine is steep,
+// and where the current passes through its zero.
 TEST(Kernel, MomentsAreAccurateForEveryEnergy) {
   std::mt19937_64 random(20240605);
   std::uniform_real_distribution<double> exponent(-15, 0);

@@ -123,7 +123,7 @@ TEST(MeanFreeTime, AtRestOnlyTheVisitedPartCounts) {
 // ---- exchange_rate.h ----
 
 // The average over eq. canmeasure of a function of (eb, ep) that is (2 E)^power times `of_pair` at
-// the total energy 1/2, where E = eb + ep. E has the law Gamma(3/2) and is independent of
+// the total energy 1/2, where E = eb + ep. E has the law Gamma(3/2), and is independent of
 // u = sqrt(ep/E), which is uniform. The function has a kink at eb = ep, a power 3/2 or 5/2.
 struct Moment {
   double (*of_pair)(double ep);

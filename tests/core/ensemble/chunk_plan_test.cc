@@ -93,8 +93,8 @@ TEST(ChunkPlan, AChunkHas32BlocksOfFiftyMillisecondsAtMost) {
   }
 }
 
-// After whole stages, of which one has a chunk of each group.
-TEST(ChunkPlan, TheFewestChunksHoldAsManyMeasuredSamples) {
+// The number of chunks is a multiple of a stage, which has a chunk of each group.
+TEST(ChunkPlan, ChunksForIsTheFewestThatHoldTheRequestedSamples) {
   for (const ChunkPlan& plan :
        {ChunkPlan(1'000'000, Engine::kLanes, 1e7), ChunkPlan(kMany, Engine::kLanes, 1e4, kSome),
         ChunkPlan(kMany, Engine::kLanes, 1e9, kSome)}) {

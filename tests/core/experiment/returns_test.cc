@@ -33,7 +33,7 @@ TEST(ReturnTimes, SurvivalIsTheShareOfLaterHits) {
     Histogram times = EmptyReturnTimes(1);
     for (int i = 0; i < 400; ++i) times.Add(i < late ? 100 : 0.05);
     const Curve curve = SurvivalCurve(times, 1);
-    const double share = (late + 0.5) / 401;  // for the error
+    const double share = (late + 0.5) / 401;  // that the error assumes
     ASSERT_EQ(curve.points.size(), kReturnTimeBins);
     EXPECT_EQ(curve.points[0].value, 1);
     EXPECT_EQ(curve.points[0].standard_error, 0);

@@ -71,8 +71,9 @@ INSTANTIATE_TEST_SUITE_P(GasRun, GasRunOfEngine,
                          testing::Values(GasEngine::kReference, GasEngine::kLanes,
                                          GasEngine::kJumps));
 
-// A hand-made history: ball 0 gives 4 to the piston on its right, and piston 0 turns at a wall.
-TEST(GasMeter, CountsAndAveragesFromTheBeginOfTheWindow) {
+// A hand-made history: ball 0 gives the energy 4 to the piston on its right, and piston 0 turns at
+// a wall.
+TEST(GasMeter, CountsAndAveragesFromTheStartOfTheWindow) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "3");
   GasMeter meter(gas, AtRest(gas));
   const auto exchange = [&meter](double time, double ball_energy) {
