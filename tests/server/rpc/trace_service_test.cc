@@ -138,11 +138,13 @@ TEST_F(TraceServiceTest, SampledCollisionsHaveAllColumns) {
   }
 }
 
+// The reason is lost if the connection closes while the client still writes to it.
 TEST_F(TraceServiceTest, AStopEndsTracesThatAreRead) {
   TraceStream stream(server_, kLong);
   ASSERT_TRUE(stream.Next());
   std::thread stop([this] { server_.Shutdown(kUnreachedLimit); });
-  EXPECT_THAT(stream.End(), IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));
+  EXPECT_THAT(stream.End(), testing::AnyOf(IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"),
+                                           IsError(grpc::StatusCode::UNAVAILABLE, "")));
   stop.join();
 }
 
