@@ -280,7 +280,8 @@ std::string MessageWithFlags(const absl::Status& error, const Verb& verb, const 
   std::string message(error.message());
   const google::rpc::BadRequest request = ErrorViolations(error);
   for (const auto& violation : request.field_violations()) {
-    const std::string &field = violation.field(), &description = violation.description();
+    const std::string& field = violation.field();
+    const std::string& description = violation.description();
     const bool is_of_file = has_file && absl::StartsWith(field, kSpec);
     const std::string in_flags =
         is_of_file

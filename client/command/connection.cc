@@ -29,7 +29,7 @@ bool HasSecurityFlags(const Options& options) {
   });
 }
 
-// What to do if gRPC's message contains this part.
+// The client prints `text`, which tells the user what to do, if gRPC's message contains `part`.
 struct Hint {
   absl::string_view part;
   std::string text;

@@ -66,7 +66,8 @@ class TestServer : public ServerProcess {
   std::string Submit(const Words& words) const;  // the name that `submit` prints
 
  private:
-  // Of a client that exits with 0; throws std::runtime_error if it exits with another code.
+  // The standard output of `ballpiston WORDS...`. Throws std::runtime_error if the client does not
+  // exit with 0.
   std::string Output(const Words& words) const;
 };
 

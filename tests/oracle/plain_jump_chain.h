@@ -54,7 +54,8 @@ class PlainJumpChain {
   double charge() const { return charge_; }
   double time() const { return time_; }
   double rate() const { return exchanges_ / time_ / static_cast<double>(2 * balls_.size()); }
-  // Of place 1, the first ball, to place 2 cells - 1, the last one; pistons are at even places.
+  // The mean temperature at a place, from 1 (the first ball) to 2 cells - 1 (the last ball). Odd
+  // places are balls, even places are pistons.
   double temperature(size_t place) const {
     return (place % 2 == 1 ? ball_energy_time_[place / 2] : 2 * piston_energy_time_[place / 2]) /
            time_;

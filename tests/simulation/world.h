@@ -1,4 +1,5 @@
-// What the clients and the events of a simulated world share, and what a run of it gives.
+// The world has the state that the clients and the events of a simulation share. A run of the world
+// returns its outcome.
 #pragma once
 
 #include <bitset>

@@ -91,7 +91,7 @@ class Sweep {
   void AwaitRunningTasks() const {
     AwaitThat([this] { return !Workers().empty(); });
   }
-  // What the server says about the cluster.
+  // The state of the cluster in the answer of `ballpiston status`.
   v1::ClusterStatus Status() const { return server_->Status().cluster(); }
   std::string Problem() const { return Status().problem(); }
   void AwaitProblem(const std::string& text) const {

@@ -30,8 +30,9 @@ struct Returns : NumberedOrbits {
   int lost = 0;
 };
 
-// Of n = 500 returns the longest takes about log n = 6 time scales, a share of 0.006. A share of
-// 0.05 is e^-50 away for an exponential law of this scale.
+// The test expects that no return takes more than a share of 0.05 of the longest wait. If return
+// times have an exponential law, the longest of n = 500 takes about log n = 6 time scales, which is
+// a share of 0.006. A return of a share of 0.05 then has the probability e^-50.
 void ExpectShort(const PairGeometry& geometry, double epsilon) {
   Returns returns(geometry, epsilon);
   ASSERT_TRUE(returns.Run(Engine::kLanes, geometry, 500));

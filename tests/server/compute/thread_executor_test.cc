@@ -33,8 +33,8 @@ BlockResult ResultOf(const EnsembleSpec& spec, OrbitDevice* device, int workers 
       ->finished.at(0);
 }
 
-// What the next process finds if the kernel kills this one during a block, and during a wait for
-// the disk.
+// The test saves the record during a block and during a wait for the disk. It simulates that the
+// kernel killed the process at that time, and counts the deaths that the next process finds.
 TEST(ThreadExecutor, ARunIsInTheRecordOnlyWhileItIsComputed) {
   const OutOfMemoryKills before = {"group", 7}, after = {"group", 8};
   const TemporaryFolder folder;
