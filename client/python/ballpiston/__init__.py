@@ -18,7 +18,6 @@ from ballpiston._version import __version__
 from ballpiston.client import Client, ServerStatus, connect
 from ballpiston.closed_forms import ClosedForms
 from ballpiston.collisions import Collisions
-from ballpiston.curve import Curve
 from ballpiston.errors import (
     DataLoss,
     DeadlineExceeded,
@@ -35,7 +34,7 @@ from ballpiston.errors import (
     Unavailable,
 )
 from ballpiston.estimates_table import estimates_table
-from ballpiston.histogram import Histogram
+from ballpiston.measured_functions import Curve, Histogram
 from ballpiston.job import Job, JobCancelled, JobFailed, JobNotSucceeded
 from ballpiston.plan import Plan
 from ballpiston.point import Estimate, Point

@@ -29,10 +29,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ballpiston._version import __version__
-from ballpiston.document import json_of
-from ballpiston.fields import FloatArray, column, value_of
+from ballpiston.fields import FloatArray, column, json_of, spelled, value_of
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS, parameters_of
-from ballpiston.spelling import spelled
 
 Arrays = dict[str, npt.NDArray[Any]]
 

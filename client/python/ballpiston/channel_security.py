@@ -4,10 +4,19 @@
     tls                TLS; the system's certificate authorities verify the server
     ca                 TLS; the certificate authorities in this file verify the server
     token              sent with every call, over TLS or to a loopback address
+
+Without TLS and without a token, the client sends to a loopback address the token of the user's own
+server, if one listens there. The server makes a token at each start, and keeps it in a file that
+only its user can read, in a folder for each machine that shares the user's home folder:
+
+    $XDG_STATE_HOME/ballpiston/tokens/MACHINE/127.0.0.1:50051    (~/.local/state if it is not set)
 """
 
 import os
+import pwd
+import socket
 import stat
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -97,3 +106,41 @@ def _contents(path: str, what: str, is_secret: bool) -> bytes:
     if len(data) > _MOST_FILE_BYTES:
         raise ValueError(f"the {what} {path} is longer than {_MOST_FILE_BYTES} bytes")
     return data
+
+
+class Token:
+    """The token that calls send. A given token file is read once. The token of the user's own
+    server is read for each call.
+
+    Raises:
+        ValueError: names a file that cannot be used.
+        PermissionDenied: names a secret file that other users can read.
+    """
+
+    def __init__(self, security: ChannelSecurity, address: str) -> None:
+        self._token = token_of(security) if security.has_token else ""
+        has_own_server = not self._token and not security.has_tls and is_loopback(address)
+        self._own_server = address if has_own_server else ""
+
+    def metadata(self) -> list[tuple[str, str]]:
+        """The metadata of a call."""
+        token = self._token
+        if self._own_server:
+            with suppress(OSError):  # no such server, or no home folder
+                tokens = user_folder("XDG_STATE_HOME", ".local/state") / "tokens"
+                token = (tokens / socket.gethostname() / self._own_server).read_text().strip()
+        return [("authorization", f"Bearer {token}")] if token else []
+
+
+def user_folder(variable: str, default: str) -> Path:
+    """The folder `ballpiston` in the folder that an XDG variable names, else in `default` below the
+    home folder: HOME if it is absolute, else the user's entry. Raises OSError: there is no entry.
+    """
+    root, home = (os.environ.get(name, "") for name in (variable, "HOME"))
+    if not root.startswith("/"):
+        try:
+            home = home if home.startswith("/") else pwd.getpwuid(os.getuid()).pw_dir
+        except KeyError:
+            raise FileNotFoundError("no home folder") from None
+        root = f"{home}/{default}"
+    return Path(root) / "ballpiston"

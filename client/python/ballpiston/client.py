@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import sys
 import uuid
 from collections.abc import Iterable, Iterator, Mapping
@@ -11,11 +12,10 @@ from typing import Any
 import numpy.typing as npt
 
 from ballpiston.closed_forms import ClosedForms
-from ballpiston.collisions import Collisions
+from ballpiston.collisions import Collisions, columns_of, events_of
 from ballpiston.connection import Connection
-from ballpiston.fields import record_of, shown
+from ballpiston.fields import from_spelling, record_of, shown, spelled
 from ballpiston.job import Job, check_labels
-from ballpiston.orbit import columns_of, events_of
 from ballpiston.parameter_lists import INT64, UINT64, Numbers, Shapes, number_list
 from ballpiston.parameter_lists import real_number, shape_list, truth_value, whole_number
 from ballpiston.plan import Plan
@@ -24,7 +24,6 @@ from ballpiston.progress import progress_on_screen
 from ballpiston.result import Result
 from ballpiston.settings import address_and_security
 from ballpiston.specification import question_of, specification, takes_keywords_of
-from ballpiston.spelling import from_spelling, spelled
 from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trace_pb2
 
 _COLLECTION = "ensembleJobs/"
@@ -71,9 +70,9 @@ def connect(
     bound = seconds if seconds < _UNLIMITED else None
     named, security = address_and_security({k: v for k, v in arguments.items() if v is not None})
     if named:
-        return Client(Connection(named, security, timeout=bound))
+        return Client(Connection(named, security, None, bound))
     private = find_program()
-    return Client(Connection(private_address(private), security, private=private, timeout=bound))
+    return Client(Connection(private_address(private), security, private, bound))
 
 
 @dataclass(frozen=True)
@@ -225,21 +224,16 @@ class Client:
             limit: at most so many; None: all.
         """
         request = ensemble_pb2.ListEnsembleJobsRequest(
-            states=_numbers_of(ensemble_pb2.EnsembleJob.State, "state", state),
-            experiments=_numbers_of(spec_pb2.EnsembleSpec.Experiment, "experiment", experiment),
+            states=_numbers_of(ensemble_pb2.EnsembleJob, "state", state),
+            experiments=_numbers_of(spec_pb2.EnsembleSpec, "experiment", experiment),
             labels=check_labels(labels),
         )
         if limit is not None and (limit := whole_number("limit", limit)) < 0:
             raise ValueError(f"limit is {limit}; permitted: 0 or more, or None for all jobs")
-        jobs: list[Job] = []
-        while limit is None or len(jobs) < limit:
-            request.page_size = _PAGE if limit is None else min(_PAGE, limit - len(jobs))
-            page = self._connection.call(request)
-            jobs += [Job(self._connection, message) for message in page.jobs]
-            request.page_token = page.next_page_token
-            if not request.page_token:
-                break
-        return jobs
+        request.page_size = _PAGE if limit is None else min(_PAGE, limit)
+        pages = self._connection.pages(request)
+        messages = itertools.islice((job for page in pages for job in page.jobs), limit)
+        return [Job(self._connection, message) for message in messages]
 
     def analytic(
         self,
@@ -339,8 +333,9 @@ class Client:
         return ServerStatus(**{fact.name: facts[fact.name] for fact in fields(ServerStatus)})
 
 
-def _numbers_of(enum: Any, what: str, names: str | Iterable[str]) -> list[int]:
-    return [from_spelling(enum, what, n) for n in ([names] if isinstance(names, str) else names)]
+def _numbers_of(message: Any, field: str, names: str | Iterable[str]) -> list[int]:
+    names = [names] if isinstance(names, str) else names
+    return [from_spelling(message, field, name) for name in names]
 
 
 def _orbit_request(

@@ -1,6 +1,7 @@
-"""Raw data behind the estimates: the collisions of a point's samples."""
+"""Raw data behind the estimates: the collisions of a point's samples, and the events of an orbit of
+the reference billiard."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ballpiston.connection import Connection
+from ballpiston.fields import record_of
+from ballpiston.suggestion import did_you_mean
 from ballpiston.v1 import trace_pb2
 from ballpiston.whole_file import whole_file
 
@@ -42,8 +45,7 @@ class Collisions:
 
     def all(self) -> Records:
         """The rest as one array."""
-        parts = list(self)
-        return np.concatenate(parts) if parts else np.empty(0, _RECORD)
+        return np.concatenate([np.empty(0, _RECORD), *self])
 
     def to_parquet(self, path: Path | str) -> None:
         """Writes the rest as a file of columns: the whole file or none. Raises ModuleNotFoundError:
@@ -68,3 +70,32 @@ def _records_of(message: Any) -> Records:
         name = _FIELDS[(column["number"] >> 3) - 1]
         records[name] = column["values"].view(_RECORD[name])
     return records
+
+
+def events_of(connection: Connection, request: Any) -> Iterator[dict[str, Any]]:
+    """The start, then the events."""
+    for message in connection.stream_again(request):
+        if message.HasField("start"):
+            yield record_of(message.start)
+        yield from map(record_of, message.events)
+
+
+def columns_of(
+    connection: Connection, request: Any, names: Sequence[str]
+) -> dict[str, npt.NDArray[Any]]:
+    """Fields of all events as arrays, for orbits that are too long for dicts."""
+    known = trace_pb2.TraceEvent.DESCRIPTOR.fields_by_name
+    for name in names:
+        if name not in known:
+            raise ValueError(f"an event has no field {name!r}{did_you_mean(name, known)}")
+    values: dict[str, list[Any]] = {name: [] for name in names}
+    for events in (message.events for message in connection.stream_again(request)):
+        for name, column in values.items():
+            if known[name].has_presence:
+                column += [getattr(e, name) if e.HasField(name) else np.nan for e in events]
+            else:
+                column += [getattr(e, name) for e in events]
+    arrays = {name: np.array(column) for name, column in values.items()}
+    if "event" in arrays:
+        arrays["event"] = np.array(trace_pb2.TraceEvent.Kind.keys())[arrays["event"]]
+    return arrays

@@ -23,7 +23,8 @@ from ballpiston.estimates_table import estimates_table
 from ballpiston.result import load
 from ballpiston.table import npz_of, write_table
 
-# The exit codes of the program ballpiston; the first class that an error belongs to counts.
+# The exit codes of the program ballpiston; the first class that an error belongs to counts. The
+# exit code of all other errors is 2.
 _EXIT_CODES: list[tuple[type[BaseException], int]] = [
     (errors.InvalidArgument, 2),
     (errors.Unavailable, 3),
@@ -32,11 +33,8 @@ _EXIT_CODES: list[tuple[type[BaseException], int]] = [
     (errors.Unauthenticated, 6),
     (errors.Error, 4),
     (KeyboardInterrupt, 130),
-    (OSError, 2),
-    (ValueError, 2),
-    (MemoryError, 2),
-    (TypeError, 2),
 ]
+_OTHERS = (OSError, ValueError, MemoryError, TypeError)
 
 
 def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str]) -> int:
@@ -48,7 +46,7 @@ def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str
             _print_name(path)
     except BrokenPipeError:  # the reader has ended
         return 0
-    except tuple(kind for kind, _ in _EXIT_CODES) as error:
+    except (errors.Error, KeyboardInterrupt, *_OTHERS) as error:
         if not isinstance(error, KeyboardInterrupt):
             print(f"ballpiston: {_with_flags(error)}", file=sys.stderr)
         return exit_code_of(error)
@@ -74,7 +72,7 @@ def exit_code_of(error: BaseException) -> int:
         return error.exit_code
     if isinstance(error, errors.ResourceExhausted) and error.reason:
         return 3 if error.retry_delay else 2  # the server names a delay if a retry can help
-    return next(code for kind, code in _EXIT_CODES if isinstance(error, kind))
+    return next((code for kind, code in _EXIT_CODES if isinstance(error, kind)), 2)
 
 
 def _with_flags(error: BaseException) -> str:

@@ -2,13 +2,22 @@
 
 Mistakes in a call itself, such as a wrong keyword or a text in place of a number, are TypeError and
 ValueError. They are raised before anything is sent.
+
+The server attaches a google.rpc.Status with an ErrorInfo (the reason, as one word) and, if the
+request is wrong, a BadRequest with every violation.
 """
 
+import re
 from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ballpiston._google_rpc import error_details_pb2, status_pb2
 
 
 class Error(Exception):
-    """What a server answered in place of a result, or why no server answered.
+    """What a server answered in place of a result, or why no server answered. The text is that of
+    the program `ballpiston`: MESSAGE (REASON), or FIELD: DESCRIPTION (REASON), or a line for each
+    violation.
 
     Attributes:
         reason: one word for programs, such as "JOB_NOT_FOUND"; empty if the server gave none, for
@@ -29,12 +38,25 @@ class Error(Exception):
         code: str = "",
         retry_delay: float = 0.0,
     ) -> None:
-        super().__init__(message)
         self.reason = reason
         self.metadata = dict(metadata or {})
         self.violations = list(violations)
         self.code = code
         self.retry_delay = retry_delay
+        super().__init__(self._text(message))
+
+    def _text(self, message: str) -> str:
+        reason = f" ({self.reason})" if self.reason else ""
+        stated = self.metadata.get("violations_left_out", "")
+        left_out = int(stated) if stated.isdecimal() else 0
+        count = len(self.violations) + left_out
+        if count == 0:
+            return message + reason
+        lines = [f"{where}: {what}" for where, what in self.violations]
+        if count == 1 and left_out == 0:
+            return lines[0] + reason
+        more = f"\n  and {left_out} more" if left_out > 0 else ""
+        return f"not valid, {count} violations{reason}:" + "".join(f"\n  {x}" for x in lines) + more
 
 
 class InvalidArgument(Error, ValueError):
@@ -87,3 +109,62 @@ class NoPrivateServer(Unavailable):
     `exit_code` is that of the program ballpiston, 0 if it was not run to its end."""
 
     exit_code = 0
+
+
+def facts_of(status: Any) -> dict[str, Any]:
+    """What a google.rpc.Status says beside its message, as keywords of an Error. Details of other
+    types are ignored."""
+    facts: dict[str, Any] = {}
+    for item in status.details:
+        info, bad = error_details_pb2.ErrorInfo(), error_details_pb2.BadRequest()
+        retry = error_details_pb2.RetryInfo()
+        if item.Unpack(info) and "reason" not in facts:
+            facts |= {"reason": info.reason, "metadata": dict(info.metadata)}
+        if item.Unpack(bad):
+            violations = [(v.field, v.description) for v in bad.field_violations]
+            facts["violations"] = facts.get("violations", []) + violations
+        if item.Unpack(retry):
+            facts["retry_delay"] = retry.retry_delay.seconds + 1e-9 * retry.retry_delay.nanos
+    return facts
+
+
+def from_rpc_error(rpc_error: Any) -> Error:
+    """The exception for a grpc.RpcError."""
+    code: str = rpc_error.code().name
+    details = dict(rpc_error.trailing_metadata() or ()).get("grpc-status-details-bin", b"")
+    try:
+        facts = facts_of(status_pb2.Status.FromString(details))
+    except Exception:  # its class depends on the implementation of protobuf
+        facts = {}
+    message = rpc_error.details() or ""
+    message = message if any(facts.values()) else _plain_text(code, message)
+    error = _class_of(code, facts)(message, code=code, **facts)
+    if isinstance(error, ResultsExpired):
+        error.args = (f"{error}\nTo compute them again: client.run(job.specification)",)
+    return error
+
+
+def _class_of(code: str, facts: Mapping[str, Any]) -> type[Error]:
+    """The class NotFound is that of NOT_FOUND, and so on."""
+    if code == "INVALID_ARGUMENT" and facts.get("violations"):
+        return InvalidSpecification
+    if code == "OUT_OF_RANGE":
+        return InvalidArgument
+    if facts.get("reason") == "RESULTS_EXPIRED":
+        return ResultsExpired
+    found: type[Error] = globals().get(code.title().replace("_", ""), Error)
+    return found
+
+
+def _plain_text(code: str, message: str) -> str:
+    """gRPC says nothing at all about a method that the server lacks, and little about a message
+    that is too large."""
+    if code == "UNIMPLEMENTED" and not message:
+        return "the server is of an earlier version, which does not offer this"
+    sizes = re.search(r"message larger than max \((\d+) vs\. (\d+)\)", message)
+    if code == "RESOURCE_EXHAUSTED" and sizes:
+        return (
+            f"the request or its answer is too large to be sent: {sizes[1]} bytes; "
+            f"at most {sizes[2]} are permitted"
+        )
+    return message or code

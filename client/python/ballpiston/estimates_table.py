@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from ballpiston.errors import NotFound, ResultsExpired
+from ballpiston.fields import spelled
 from ballpiston.job import Job
 from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
-from ballpiston.result_table import warnings_of
-from ballpiston.spelling import spelled
+from ballpiston.result import warnings_of
 from ballpiston.table import Table
 from ballpiston.v1 import ensemble_pb2
 
@@ -61,7 +61,7 @@ def _rows(job: Job) -> Iterator[dict[str, Any]]:
         "continues": job.continues,
         "engine_version": job.message.engine_version,
     }
-    for warning in warnings_of(result.messages):
+    for warning in warnings_of(result):
         print(f"ballpiston: {job.name}: {warning}", file=sys.stderr)
     for point in result:
         of_point = {"index": point.index, "model": point.model, "samples": point.message.samples}

@@ -13,15 +13,13 @@ from operator import attrgetter
 from typing import Any, cast
 
 from ballpiston.connection import Connection
-from ballpiston.error_details import details_of, error_of
-from ballpiston.errors import Error, NotFound, ResultsExpired
-from ballpiston.fields import shown, value_of
+from ballpiston.errors import Error, NotFound, facts_of
+from ballpiston.fields import shown, spelled, value_of
 from ballpiston.parameter_lists import truth_value
 from ballpiston.progress import fraction_of, progress_on_screen
 from ballpiston.result import Result
-from ballpiston.result_table import html_table
 from ballpiston.specification import set_target
-from ballpiston.spelling import spelled
+from ballpiston.table import html_table
 from ballpiston.v1 import ensemble_pb2, spec_pb2
 from ballpiston.watch import Attachments, Update, has_ended, watch_job, watch_updates
 
@@ -84,7 +82,7 @@ class Job:
         lambda job: fraction_of(job.progress), "The share of the work that is done, 0 to 1."
     )
     error = shown(
-        lambda job: details_of(job.error).text(job.error.message),
+        lambda job: str(Error(job.error.message, **facts_of(job.error))),
         "Why it failed; empty if it did not.",
     )
     pinned = shown(lambda job: bool(job.pinned), "Whether its results do not expire.")
@@ -103,7 +101,7 @@ class Job:
         """Now: "queued", "running", "cancelling", "succeeded", "failed" or "cancelled"."""
         if not has_ended(self.message.state):
             self.refresh()
-        return self._last_state()
+        return spelled(self.message, "state")
 
     @property
     def has_ended(self) -> bool:
@@ -112,7 +110,7 @@ class Job:
 
     def refresh(self) -> Job:
         """Asks the server for the job as it is now."""
-        self.message = self._call(ensemble_pb2.GetEnsembleJobRequest(name=self.name))
+        self.message = self._connection.call(ensemble_pb2.GetEnsembleJobRequest(name=self.name))
         return self
 
     def watch(self, progress: bool | str = True) -> Result:
@@ -172,16 +170,15 @@ class Job:
             labels=self.labels,
             priority=self.message.priority,
         )
-        return Job(self._connection, self._call(request))
+        return Job(self._connection, self._connection.call(request))
 
     async def updates(self) -> AsyncIterator[Update]:
         """What changes until the job has ended, for an event loop: the wait needs no thread. Raises
         Unavailable, ResourceExhausted: as `watch`."""
-        async for update in watch_updates(self._connection, self.name):
-            if isinstance(update, Update):
-                yield update
-            else:
-                self._end(update)
+        watch = Attachments(self.name)
+        async for update in watch_updates(self._connection, watch):
+            yield update
+        self._end(watch.ended)
 
     async def result_async(self) -> Result:
         """`watch` for an event loop, without a bar. Raises JobFailed, JobCancelled, Unavailable,
@@ -203,22 +200,17 @@ class Job:
         curves."""
         self.message.answered_from_store = self.answered_from_store
         request = ensemble_pb2.ListResultsRequest(parent=self.name, page_size=_PAGE, view=view)
-        points: list[Any] = []
-        while True:
-            page = self._call(request)
-            for point in page.results:
-                point.ClearField("name")  # as in files: equal answers are equal results
-                points.append(point)
-            request.page_token = page.next_page_token
-            if not request.page_token:
-                return Result(self.message, points)
+        points = [point for page in self._connection.pages(request) for point in page.results]
+        for point in points:
+            point.ClearField("name")  # as in files: equal answers are equal results
+        return Result(self.message, points)
 
     def cancel(self) -> Job:
         """Stops the job. Its finished points stay. Raises FailedPrecondition: it has already
         succeeded or failed (reason JOB_ALREADY_ENDED)."""
         key = str(uuid.uuid4())
         request = ensemble_pb2.CancelEnsembleJobRequest(name=self.name, request_id=key)
-        self.message = self._call(request)
+        self.message = self._connection.call(request)
         return self
 
     def pin(self, pinned: bool = True) -> Job:
@@ -240,9 +232,9 @@ class Job:
         self._connection.call_once(ensemble_pb2.DeleteEnsembleJobRequest(name=self.name))
 
     def __repr__(self) -> str:
-        progress = self.message.progress
+        progress, state = self.message.progress, spelled(self.message, "state")
         return (
-            f"<job {self.name}: {self.experiment}, {self._last_state()}, "
+            f"<job {self.name}: {self.experiment}, {state}, "
             f"{progress.points_done} of {progress.points} points>"
         )
 
@@ -253,7 +245,7 @@ class Job:
         progress = self.message.progress
         facts = {
             "experiment": self.experiment,
-            "state": self._last_state(),
+            "state": spelled(self.message, "state"),
             "points": f"{progress.points_done} of {progress.points}",
             "progress": f"{100 * self.progress:.0f} %",
             "error": self.error,
@@ -261,20 +253,10 @@ class Job:
         known = {name: fact for name, fact in facts.items() if fact}
         return html_table(f"job {self.name}", known, [known.values()])
 
-    def _last_state(self) -> str:
-        return spelled(self.message, "state")
-
-    def _call(self, request: Any) -> Any:
-        try:
-            return self._connection.call(request)
-        except ResultsExpired as error:
-            error.args = (f"{error}\nTo compute them again: client.run(job.specification)",)
-            raise
-
     def _update(self, **fields: Any) -> Job:
         job, mask = ensemble_pb2.EnsembleJob(name=self.name, **fields), {"paths": list(fields)}
         request = ensemble_pb2.UpdateEnsembleJobRequest(job=job, update_mask=mask)
-        self.message = self._call(request)
+        self.message = self._connection.call(request)
         return self
 
     def _end(self, job: Any) -> None:
@@ -284,13 +266,13 @@ class Job:
         self.message = job
 
     def _raise_unless_succeeded(self) -> None:
-        state = self._last_state()
+        state = spelled(self.message, "state")
         if state == "succeeded":
             return
         error_class: type[JobNotSucceeded] = JobCancelled if state == "cancelled" else JobFailed
         status = self.message.error
         text = f"{self.name} {state}" + (f": {status.message}" if status.message else "")
-        error = error_of(error_class, text, details_of(status), "")
+        error = error_class(text, **facts_of(status))
         error.job = self
         raise error
 

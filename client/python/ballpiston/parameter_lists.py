@@ -16,7 +16,8 @@ here. The server judges the values.
 
 import math
 import numbers
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Union
 
 import numpy as np
@@ -35,6 +36,7 @@ UINT64 = (0, 2**64 - 1)
 _MOST = 100_000  # values of a list
 _NO_LISTS = (bytes, bytearray, Mapping)  # iterable, but not lists of numbers
 _NUMBER_CHARACTERS = frozenset("0123456789+-.eE")
+_NUMBER = re.compile(r"-?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
 
 def number_list(name: str, value: Numbers) -> list[float]:
@@ -114,13 +116,10 @@ def _parsed_list(name: str, text: str) -> list[float]:
 
 
 def _parsed_number(name: str, text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if math.isnan(number) or text[0] == "+" or not set(text) <= _NUMBER_CHARACTERS:
+    if not _NUMBER.fullmatch(text):
         raise ValueError(f"{name}: {text!r} is not a decimal number such as 0.1 or 1e-3")
-    is_below = number == 0 and not set(text.lower().split("e")[0]).isdisjoint("123456789")
+    number = float(text)
+    is_below = number == 0 and re.match("[^eE]*[1-9]", text)
     if is_below or math.isinf(number):
         raise ValueError(
             f"{name}: {text!r} is beyond double precision; permitted: 0, or an absolute value from "
@@ -181,6 +180,12 @@ def _chain(name: str, value: object) -> str:
     return str(round(number))
 
 
+def add_list(grid: Any, parameter: str, values: Any, name: str = "") -> None:
+    """Adds the values to the list of a Grid. `name` names them in errors."""
+    read: Callable[[str, Any], Any] = shape_list if parameter == "cells" else number_list
+    getattr(grid, parameter).extend(read(name or parameter, values))
+
+
 def add_points(points: Points, grid: Any) -> None:
     """Adds the columns to the lists of a Grid, and their names to its table. Raises TypeError: not
     a table, or a column that is also given as a list; ValueError: an unknown column, a row that
@@ -195,15 +200,10 @@ def add_points(points: Points, grid: Any) -> None:
         if len(getattr(grid, name)) > 0:
             raise TypeError(f"points has the column {name}, and {name} is given: give one of them")
         of_column = f"points, column {name}"
-        if name == "cells":
-            for value in values:
-                if ":" in str(value):
-                    raise ValueError(
-                        f"{of_column} has the range {value!r}; permitted: one shape a row"
-                    )
-            grid.cells.extend(shape_list(of_column, values))
-        else:
-            getattr(grid, name).extend(number_list(of_column, values))
+        ranges = [value for value in values if name == "cells" and ":" in str(value)]
+        if ranges:
+            raise ValueError(f"{of_column} has the range {ranges[0]!r}; permitted: one shape a row")
+        add_list(grid, name, values, of_column)
         grid.table.append(name)
 
 

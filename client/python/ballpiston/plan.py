@@ -2,10 +2,8 @@
 
 from typing import Any
 
-from ballpiston.fields import shown, value_of
-from ballpiston.result_table import html_table
-from ballpiston.spelling import spelled
-from ballpiston.table import frame_of
+from ballpiston.fields import shown, spelled, value_of
+from ballpiston.table import frame_of, html_table
 
 _MOST_ROWS = 25
 

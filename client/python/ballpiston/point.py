@@ -6,11 +6,10 @@ import math
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ballpiston.curve import Curve, choose_curve, curve_of
-from ballpiston.fields import shown, value_of
-from ballpiston.histogram import Histogram, choose_histogram, histograms_of
-from ballpiston.spelling import spelled
-from ballpiston.suggestion import did_you_mean
+from ballpiston.fields import shown, spelled, value_of
+from ballpiston.measured_functions import Curve, Histogram, choose_histogram, curve_of
+from ballpiston.measured_functions import histograms_of
+from ballpiston.suggestion import did_you_mean, no_such
 
 _SMALLEST, _LARGEST = 1e-4, 1e7  # outside these a number has an exponent
 _ROUNDING = 5e-13  # an error below this share of the value is that of rounding
@@ -53,9 +52,27 @@ class Estimate:
 ESTIMATE_FIELDS = tuple(field.name for field in fields(Estimate))[2:]
 
 
+def _estimate(message: Any) -> Estimate:
+    facts = {field: value_of(message, field) for field in ESTIMATE_FIELDS}
+    return Estimate(message.name, message.value, **facts)
+
+
+def parameters_of(message: Any) -> dict[str, float | str]:
+    """Of a PointResult: rho, delta and the optional ones that it has."""
+    parameters = {name: value_of(message.parameters, name) for name in PARAMETERS}
+    return {name: value for name, value in parameters.items() if value is not None}
+
+
 class Point:
     """What was measured at one point, for instance result[0]["mean_hit_time"]."""
 
+    parameters = shown(
+        parameters_of, "The values of the parameters that the experiment uses, `cells` as text."
+    )
+    estimates = shown(
+        lambda point: {message.name: _estimate(message) for message in point.estimates},
+        "All of them by name, in the order of the answer.",
+    )
     index = shown(lambda point: int(point.index), "Position in the grid, rho outermost.")
     model = shown(
         lambda point: spelled(point, "model"), 'The model that answered, such as "billiard".'
@@ -74,16 +91,6 @@ class Point:
     def __init__(self, message: Any) -> None:
         self.message = message  # ballpiston.v1.PointResult
 
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """The values of the parameters that the experiment uses, `cells` as text."""
-        return parameters_of(self.message)
-
-    @property
-    def estimates(self) -> dict[str, Estimate]:
-        """All of them by name, in the order of the answer."""
-        return {message.name: _estimate(message) for message in self.message.estimates}
-
     def __getitem__(self, name: str) -> float:
         return self._named(name).value
 
@@ -98,8 +105,11 @@ class Point:
         return choose_histogram(self.histograms, name, sigma, time)
 
     def curve(self, name: str) -> Curve:
-        """The curve of this name."""
-        return choose_curve(self.message.curves, name)
+        """The curve of this name. Raises KeyError: there is none."""
+        messages = {message.name: message for message in self.message.curves}
+        if name not in messages:
+            raise KeyError(no_such("curve", name, "this point", messages))
+        return curve_of(messages[name])
 
     def __repr__(self) -> str:
         shown = ", ".join(f"{name}={value}" for name, value in self.parameters.items())
@@ -113,22 +123,11 @@ class Point:
         raise KeyError(unknown_estimate(name, list(estimates)))
 
 
-def parameters_of(message: Any) -> dict[str, float | str]:
-    """Of a PointResult: rho, delta and the optional ones that it has."""
-    parameters = {name: value_of(message.parameters, name) for name in PARAMETERS}
-    return {name: value for name, value in parameters.items() if value is not None}
-
-
 def unknown_estimate(name: object, names: list[str]) -> str:
     """The message of a KeyError."""
     return f"there is no estimate {name!r}{did_you_mean(str(name), names)}; " + (
         f"the estimates are {', '.join(names)}" if names else "no point is finished"
     )
-
-
-def _estimate(message: Any) -> Estimate:
-    facts = {field: value_of(message, field) for field in ESTIMATE_FIELDS}
-    return Estimate(message.name, message.value, **facts)
 
 
 def measured_text(value: float, error: float | None = None) -> str:

@@ -43,24 +43,16 @@ def private_address(program: str) -> str:
 
 
 def find_program() -> str:
-    """The path of the program `ballpiston`: what BALLPISTON_PROGRAM names, else the one that is
-    installed with this package, else the one in PATH. Raises NoPrivateServer: there is none."""
-    program = os.environ.get("BALLPISTON_PROGRAM") or _program_beside_package()
-    if program := program or shutil.which(_PROGRAM):
-        return program
+    """The path of the program `ballpiston`: what BALLPISTON_PROGRAM names, else PREFIX/bin/ballpiston
+    for a package in PREFIX/lib/python3/dist-packages or, in a folder of a build, in PREFIX/python,
+    else the one in PATH. Raises NoPrivateServer: there is none."""
+    if named := os.environ.get("BALLPISTON_PROGRAM"):
+        return named
+    beside_package = [up / "bin" / _PROGRAM for up in Path(__file__).resolve().parents[2:5:2]]
+    for program in map(str, (*beside_package, _PROGRAM)):
+        if found := shutil.which(program):
+            return found
     raise NoPrivateServer(
         "the program ballpiston, which starts the private server, was not found: install the "
         'package ballpiston, or name a server: ballpiston.connect("host:port")'
     )
-
-
-def _program_beside_package() -> str | None:
-    """PREFIX/bin/ballpiston for a package in PREFIX/lib/python3/dist-packages or, in a folder of a
-    build, in PREFIX/python."""
-    parents = Path(__file__).resolve().parent.parents
-    for level in (1, 3):
-        if level < len(parents):
-            program = parents[level] / "bin" / _PROGRAM
-            if os.access(program, os.X_OK) and program.is_file():
-                return str(program)
-    return None

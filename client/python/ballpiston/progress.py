@@ -9,20 +9,51 @@ import sys
 import warnings
 from typing import Any
 
-from ballpiston.document import json_of
+from ballpiston.fields import json_of
 from ballpiston.point import Point
 from ballpiston.v1 import ensemble_pb2
 
 _BAR_WIDTH = 20
 
 
-class Bar:
+class Progress:
+    """Follows a watch, and shows nothing."""
+
+    _done = ""  # points
+    _fraction = 0.0
+
+    def show(self, message: Any) -> None:
+        """Shows a message of a watch."""
+        progress = progress_in(message)
+        if progress is None:
+            return
+        points = list(message.snapshot.points) or list(message.snapshot.finished_points)[-1:]
+        self._fraction = fraction_of(progress)
+        self._done = f"{progress.points_done}/{progress.points} points"
+        first = next(iter(Point(points[0]).estimates.values()), None) if points else None
+        self.draw(self._fraction, self._done if first is None else f"{self._done}  {first}")
+
+    def show_pause(self, is_busy: bool, pause: float) -> None:
+        """Shows that the stream broke and that the next stream begins after `pause` seconds."""
+        why = "server busy" if is_busy else "no answer"
+        self.draw(self._fraction, f"{self._done}  {why}, retrying in {pause:.1f} s")
+
+    def draw(self, fraction: float, text: str) -> None:
+        """Draws the bar, in place of the last one."""
+
+    def note(self, text: str) -> None:
+        """Writes a line of its own, above the bar."""
+
+    def close(self) -> None:
+        """Ends the line of the bar."""
+
+
+class Bar(Progress):
     """A line on standard error that every update overwrites."""
 
-    def __init__(self) -> None:
-        self._width = 0
+    _width = 0
 
-    def show(self, fraction: float, text: str) -> None:
+    def draw(self, fraction: float, text: str) -> None:
         marks = int(min(max(fraction, 0.0), 1.0) * _BAR_WIDTH)
         room = _columns() - 1  # a longer line would wrap
         line = f"[{'#' * marks}{'-' * (_BAR_WIDTH - marks)}] {text}"[:room]
@@ -31,7 +62,6 @@ class Bar:
         self._width = len(line)
 
     def note(self, text: str) -> None:
-        """A line of its own, above the bar."""
         sys.stderr.write("\r" + text.ljust(self._width) + "\n")
 
     def close(self) -> None:
@@ -47,13 +77,12 @@ def _columns() -> int:
         return 80
 
 
-class _TqdmBar(Bar):
+class _TqdmBar(Progress):
     def __init__(self, tqdm: Any) -> None:
-        super().__init__()
         self._tqdm = tqdm
         self._bar: Any = None
 
-    def show(self, fraction: float, text: str) -> None:
+    def draw(self, fraction: float, text: str) -> None:
         if self._bar is None:
             shape = "{percentage:3.0f}%|{bar}| {desc} [{elapsed}<{remaining}]"
             # `initial`: tqdm computes the time left from the progress during this watch only.
@@ -73,49 +102,10 @@ class _TqdmBar(Bar):
             self._bar.close()
 
 
-class Progress:
-    """Shows the progress of a watch on a bar. Without a bar (None) it shows nothing."""
-
-    def __init__(self, bar: Bar | None) -> None:
-        self._bar = bar
-        self._fraction = 0.0
-        self._text = ""
-
-    def show(self, message: Any) -> None:
-        """Shows a message of a watch."""
-        progress = progress_in(message)
-        if progress is None:
-            return
-        points = list(message.snapshot.points) or list(message.snapshot.finished_points)[-1:]
-        self._fraction = fraction_of(progress)
-        self._text = f"{progress.points_done}/{progress.points} points"
-        first = next(iter(Point(points[0]).estimates.values()), None) if points else None
-        self._show(self._text if first is None else f"{self._text}  {first}")
-
-    def show_pause(self, is_busy: bool, pause: float) -> None:
-        """Shows that the stream broke and that the next stream begins after `pause` seconds."""
-        why = "server busy" if is_busy else "no answer"
-        self._show(f"{self._text}  {why}, retrying in {pause:.1f} s")
-
-    def note(self, text: str) -> None:
-        if self._bar is not None:
-            self._bar.note(text)
-
-    def close(self) -> None:
-        if self._bar is not None:
-            self._bar.close()
-
-    def _show(self, text: str) -> None:
-        if self._bar is not None:
-            self._bar.show(self._fraction, text)
-
-
 class JsonLines(Progress):
     """Writes each message as one line of JSON to standard error, for programs."""
 
-    def __init__(self) -> None:
-        super().__init__(None)
-        self._job: dict[str, Any] = {}
+    _job: dict[str, Any] = {}
 
     def show(self, message: Any) -> None:
         if message.HasField("job"):
@@ -134,7 +124,7 @@ def progress_on_screen(wanted: bool | str) -> Progress:
     if wanted == "json":
         return JsonLines()
     is_seen = wanted in (True, "auto") and (has_terminal() or _is_notebook())
-    return Progress(_new_bar() if is_seen or wanted == "bar" else None)
+    return _new_bar() if is_seen or wanted == "bar" else Progress()
 
 
 def has_terminal() -> bool:
@@ -161,7 +151,7 @@ def _is_notebook() -> bool:
     return shell is not None and hasattr(shell, "kernel")
 
 
-def _new_bar() -> Bar:
+def _new_bar() -> Progress:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # tqdm warns if a notebook has no widgets

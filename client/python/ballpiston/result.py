@@ -1,26 +1,37 @@
-"""The finished points of a job, as NumPy arrays over the points."""
+"""The finished points of a job, as NumPy arrays over the points, and their JSON document."""
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Iterator, Sequence
-from functools import cached_property
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property, partial
+from html import escape
+from itertools import islice
 from operator import attrgetter
 from pathlib import Path
 from typing import Any, overload
 
 import numpy.typing as npt
+from google.protobuf import json_format
 
+from ballpiston._version import __version__
 from ballpiston.arrays import Arrays, arrays_of, by_name, only, parameter_arrays
-from ballpiston.curve import Curve
-from ballpiston.document import document_of, read_document
-from ballpiston.fields import FloatArray, column, shown, shown_once
-from ballpiston.histogram import Histogram
-from ballpiston.point import Point, unknown_estimate
-from ballpiston.result_table import result_html, result_text
-from ballpiston.spelling import spelled
-from ballpiston.table import frame_of, write_table
+from ballpiston.fields import FloatArray, Value, column, json_of, shown, spelled
+from ballpiston.measured_functions import Curve, Histogram
+from ballpiston.point import Point, measured_text, unknown_estimate
+from ballpiston.table import frame_of, html_table, write_table
+from ballpiston.v1 import ensemble_pb2, result_pb2
 from ballpiston.whole_file import write_atomically
+
+_MOST_ROWS = 20
+
+
+def _shown_once(read: Callable[[Any], Value], doc: str) -> Value:
+    """A property of a Result: what the function reads in its messages, once for each object."""
+    once = cached_property(lambda result: read(result.messages))
+    once.__doc__ = doc
+    return once  # type: ignore[return-value]
 
 
 class Result:
@@ -36,25 +47,21 @@ class Result:
         messages: one message ballpiston.v1.PointResult for each point.
     """
 
-    parameters = shown_once(
+    parameters = _shown_once(
         lambda points: {name: _fixed(a) for name, a in parameter_arrays(points).items()},
         "Arrays of rho, delta and of every other parameter that is used; `cells` as str.",
-        "messages",
     )
-    samples = shown_once(
+    samples = _shown_once(
         lambda points: _fixed(column(points, "samples")),
         "First hits, orbits, replicas or collisions at each point.",
-        "messages",
     )
-    models = shown_once(
+    models = _shown_once(
         lambda points: [spelled(point, "model") for point in points],
         'The model that answered at each point, such as "billiard".',
-        "messages",
     )
-    remarks: list[list[str]] = shown_once(
+    remarks: list[list[str]] = _shown_once(
         lambda points: [list(point.remarks) for point in points],
         "Sentences about each point, for instance that its run was too short.",
-        "messages",
     )
     job_name = shown(lambda job: str(job.name), "ensembleJobs/ID, for client.job.", "job")
     state = shown(lambda job: spelled(job, "state"), "When the result was fetched.", "job")
@@ -148,7 +155,7 @@ class Result:
         .json nor .npz."""
         path = Path(path)
         if path.suffix == ".json":
-            write_atomically(path, document_of(self.job, self.messages).encode())
+            write_atomically(path, self._document().encode())
         elif path.suffix == ".npz":
             write_table(path, self.arrays())
         else:
@@ -159,19 +166,44 @@ class Result:
             return NotImplemented
         return bool(self.job == other.job and self.messages == other.messages)
 
-    __hash__ = None  # type: ignore[assignment]
-
     def __repr__(self) -> str:
-        return result_text(self._heading(), self.messages)
+        lines = self._lines()
+        widths = [max(map(len, column)) for column in zip(*lines)]
+        aligned = ["  ".join(map(str.rjust, line, widths)) for line in lines]
+        return "\n".join([self._heading(), *aligned, *self._ending()])
 
     def _repr_html_(self) -> str:
-        return result_html(self._heading(), self.messages)
+        titles, *rows = self._lines() or [[]]
+        ending = "".join(f"<p>{escape(line)}</p>" for line in self._ending())
+        return html_table(self._heading(), titles, rows) + ending
+
+    def _lines(self) -> list[list[str]]:
+        """The titles, then a line for each of the first points; nothing without a point."""
+        rows = [_row(point) for point in islice(self, _MOST_ROWS)]
+        titles = list(dict.fromkeys(title for row in rows for title in row))
+        lines = [[row.get(title, "") for title in titles] for row in rows]
+        return [titles, *lines] if lines else []
+
+    def _ending(self) -> list[str]:
+        more = [f"and {len(self) - _MOST_ROWS} more points"] if len(self) > _MOST_ROWS else []
+        remarks = dict.fromkeys(remark for of_point in self.remarks for remark in of_point)
+        return [*more, *(f"remark: {r}" for r in remarks), *warnings_of(self)[:_MOST_ROWS]]
 
     def _heading(self) -> str:
         return (
             f"{spelled(self.job.spec, 'experiment')}, {len(self)} of {self.job.progress.points} "
             f"points, seed {self.job.spec.seed}, engine {self.job.engine_version} "
             f"({self.job_name}, {self.state})"
+        )
+
+    def _document(self) -> str:
+        """As `ballpiston result JOB --format json` prints it, one point a line. Messages have the
+        protocol's own field names; fields with their default value are written too; 64-bit
+        integers are strings, as JSON of Protocol Buffers has it."""
+        points = ",\n".join(json.dumps(json_of(message)) for message in self.messages)
+        return (
+            f'{{"client_version": {json.dumps(__version__)},\n'
+            f'"job": {json.dumps(json_of(self.job))},\n"points": [\n{points}\n]}}\n'
         )
 
     @cached_property
@@ -191,8 +223,39 @@ def _fixed(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
     return array
 
 
+def _row(point: Point) -> dict[str, str]:
+    row = {k: v if isinstance(v, str) else f"{v:.6g}" for k, v in point.parameters.items()}
+    row["model"] = point.model
+    row["samples"] = f"{point.samples:.15g}"
+    for estimate in point.estimates.values():
+        row[estimate.name] = measured_text(estimate.value, estimate.standard_error)
+        if estimate.z_score is not None:
+            row[estimate.name] += f" (z {estimate.z_score:+.2f})"
+    return row
+
+
+def warnings_of(result: Result) -> list[str]:
+    """A sentence for each point whose orbits left the cell."""
+    lost = "orbits left the cell; this is a defect: do not use the point"
+    escapes = {message.index: message.health.escapes for message in result.messages}
+    return [f"warning: point {i}: {count:.15g} {lost}" for i, count in escapes.items() if count]
+
+
 def load(path: str | os.PathLike[str]) -> Result:
     """A result from a JSON file that `result.save` or `ballpiston result JOB --format json` wrote.
     Needs no server. Raises ValueError: the file is not a saved result, for instance one with arrays
     (.npz), which numpy.load reads; OSError: the file cannot be read."""
-    return Result(*read_document(Path(path)))
+    data = Path(path).read_bytes()
+    if data.startswith(b"PK\x03\x04"):  # an archive
+        raise ValueError(
+            f"{path} contains arrays: numpy.load reads it. ballpiston.load reads the JSON files "
+            'that result.save("NAME.json") and ballpiston result JOB --format json write'
+        )
+    try:
+        document = json.loads(data)
+        read = partial(json_format.ParseDict, ignore_unknown_fields=True)
+        job = read(document["job"], ensemble_pb2.EnsembleJob())
+        points = [read(point, result_pb2.PointResult()) for point in document["points"]]
+    except (ValueError, KeyError, TypeError, AttributeError, json_format.ParseError) as error:
+        raise ValueError(f"{path} is not a saved result: {error!r}") from error
+    return Result(job, points)

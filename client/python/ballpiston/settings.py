@@ -2,13 +2,12 @@
 file of the command line, ~/.config/ballpiston/config.toml."""
 
 import os
-import pwd
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ballpiston.channel_security import ChannelSecurity
+from ballpiston.channel_security import ChannelSecurity, user_folder
 from ballpiston.server_address import is_socket
 
 # The argument, the variable, and the key in the config file.
@@ -28,7 +27,8 @@ def address_and_security(given: Mapping[str, Any]) -> tuple[str, ChannelSecurity
     server. Over a Unix socket, the private server's too, only arguments count. Raises ValueError:
     the private server with TLS or a token, or a config file that is not TOML."""
     settings: dict[str, Any] = {}
-    for stronger in (_config_file(), _environment(), given):
+    environment = {name: v for name, variable, _ in _SETTINGS if (v := os.environ.get(variable))}
+    for stronger in (_config_file(), environment, given):
         if "token" in stronger or "token_file" in stronger:
             settings.pop("token", None)
             settings.pop("token_file", None)
@@ -45,41 +45,19 @@ def address_and_security(given: Mapping[str, Any]) -> tuple[str, ChannelSecurity
     return address, ChannelSecurity(**settings)
 
 
-def home_folder() -> Path:
-    """HOME if it is absolute, else the user's entry. Raises RuntimeError: there is no entry."""
-    home = os.environ.get("HOME", "")
-    try:
-        return Path(home if home.startswith("/") else pwd.getpwuid(os.getuid()).pw_dir)
-    except KeyError:
-        raise RuntimeError("no home folder") from None
-
-
-def _environment() -> dict[str, str]:
-    values = {name: os.environ.get(variable, "") for name, variable, _ in _SETTINGS}
-    return {name: value for name, value in values.items() if value}
-
-
 def _config_file() -> dict[str, Any]:
-    path = _config_path()
-    if path is None:
+    named = os.environ.get("BALLPISTON_CONFIG")
+    try:
+        path = Path(named or user_folder("XDG_CONFIG_HOME", ".config") / "config.toml")
+        if not named and not path.exists():
+            return {}
+    except OSError:  # a folder of another user, or no home folder
         return {}
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise ValueError(f"the config file {path} cannot be used: {error}") from error
     return {name: content[key] for name, _, key in _SETTINGS if content.get(key)}
-
-
-def _config_path() -> Path | None:
-    if named := os.environ.get("BALLPISTON_CONFIG"):
-        return Path(named)
-    folder = os.environ.get("XDG_CONFIG_HOME", "")
-    try:
-        root = Path(folder) if folder.startswith("/") else home_folder() / ".config"
-        path = root / "ballpiston" / "config.toml"
-        return path if path.exists() else None
-    except (OSError, RuntimeError):  # a folder of another user, or no home folder
-        return None
 
 
 def _truth(value: object) -> bool:

@@ -12,10 +12,9 @@ from typing import Any, TypeVar
 
 from google.protobuf import json_format
 
-from ballpiston.parameter_lists import INT64, UINT64, Numbers, Points, Shapes, add_points
-from ballpiston.parameter_lists import number_list, real_number, shape_list, truth_value
-from ballpiston.parameter_lists import whole_number
-from ballpiston.spelling import from_spelling
+from ballpiston.fields import from_spelling
+from ballpiston.parameter_lists import INT64, UINT64, Numbers, Points, Shapes, add_list, add_points
+from ballpiston.parameter_lists import real_number, truth_value, whole_number
 from ballpiston.suggestion import did_you_mean
 from ballpiston.v1 import spec_pb2
 
@@ -86,14 +85,12 @@ def specification(
         [0.1, 0.2, 0.3]
     """
     spec = spec_pb2.EnsembleSpec(verify=truth_value("verify", verify))
-    spec.experiment = from_spelling(spec_pb2.EnsembleSpec.Experiment, "experiment", experiment)
-    grid = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
-    grid |= {"temperature": temperature, "hot": hot, "cold": cold}
+    spec.experiment = from_spelling(spec, "experiment", experiment)
+    grid: dict[str, Any] = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
+    grid |= {"cells": cells, "temperature": temperature, "hot": hot, "cold": cold}
     for name, values in grid.items():
         if values is not None:
-            getattr(spec.grid, name).extend(number_list(name, values))
-    if cells is not None:
-        spec.grid.cells.extend(shape_list("cells", cells))
+            add_list(spec.grid, name, values)
     if points is not None:
         add_points(points, spec.grid)
     targets = {"samples": samples, "collisions": collisions}
@@ -104,9 +101,9 @@ def specification(
         spec.target.estimate = estimate
     spec.seed = whole_number("seed", seed, *UINT64)
     if model is not None:
-        spec.model = from_spelling(spec_pb2.EnsembleSpec.Model, "model", model)
+        spec.model = from_spelling(spec, "model", model)
     if precision is not None:
-        spec.precision = from_spelling(spec_pb2.EnsembleSpec.Precision, "precision", precision)
+        spec.precision = from_spelling(spec, "precision", precision)
     return spec
 
 

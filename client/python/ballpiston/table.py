@@ -1,7 +1,10 @@
-"""Tables of named columns: in files (.csv, .npz or .parquet) and as data frames."""
+"""Tables of named columns, in files (.csv, .npz or .parquet) and as data frames; and rows of texts
+as HTML."""
 
 import csv
 import io
+from collections.abc import Iterable, Sequence
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +21,18 @@ def frame_of(table: Any) -> Any:
     import pandas
 
     return pandas.DataFrame(table)
+
+
+def html_table(heading: str, titles: Iterable[str], rows: Sequence[Iterable[str]]) -> str:
+    """Heading and rows as HTML. Every text is escaped."""
+
+    def line(tag: str, texts: Iterable[str]) -> str:
+        return "<tr>" + "".join(f"<{tag}>{escape(text)}</{tag}>" for text in texts) + "</tr>"
+
+    body = "".join(line("td", row) for row in rows)
+    head = line("th", titles)
+    table = f"<table><thead>{head}</thead><tbody>{body}</tbody></table>" if rows else ""
+    return f"<p>{escape(heading)}</p>{table}"
 
 
 def write_table(path: Path, table: Table, comment: str = "", compressed: bool = True) -> None:

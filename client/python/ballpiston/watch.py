@@ -23,16 +23,19 @@ from typing import Any
 import grpc
 import grpc.aio
 
-from ballpiston.channel import open_channel
 from ballpiston.connection import Connection
 from ballpiston.errors import Error, Unavailable
+from ballpiston.fields import spelled
 from ballpiston.point import Point
 from ballpiston.progress import Progress, fraction_of, progress_in
-from ballpiston.spelling import spelled
 from ballpiston.v1 import ensemble_pb2, ensemble_pb2_grpc
 
 _LONGEST_CONNECTING = 1.0  # seconds
 _JOB = ensemble_pb2.EnsembleJob
+# Why a stream ended that had no error and no ended job.
+_EARLY_END: Error = Unavailable(
+    "the server ended the watch before the end of the job", code="UNAVAILABLE"
+)
 
 
 def has_ended(state: int) -> bool:
@@ -44,7 +47,13 @@ def watch_job(connection: Connection, watch: Attachments, screen: Progress) -> A
     """Blocks until the job has ended and returns it, as an EnsembleJob. Raises Unavailable,
     ResourceExhausted: the watch gave up; Error: any other error of the server."""
     while True:
-        why = _read_stream(connection, watch, screen)
+        why = _EARLY_END
+        try:
+            for message in connection.stream(watch.request):
+                watch.handle(message)
+                screen.show(message)
+        except Error as error:
+            why = error
         if watch.ended is not None:
             return watch.ended
         pause = watch.pause_after(why)
@@ -90,7 +99,8 @@ class Attachments:
         """Seconds until the next stream, after one that `why` ended. Raises Error: `why`, if it
         does not say that the stream broke, or if it is time to give up and the server is busy;
         Unavailable: it is time to give up, and no server answers."""
-        if not _is_broken_stream(why):
+        broken = {("CANCELLED", False), ("RESOURCE_EXHAUSTED", True)}
+        if why.code != "UNAVAILABLE" and (why.code, bool(why.reason)) not in broken:
             raise why
         pause = self.next_pause(time.monotonic(), why.retry_delay)
         if pause is None and why.code == "RESOURCE_EXHAUSTED":
@@ -113,27 +123,6 @@ class Attachments:
         return None if now - self._lost + pause > self._give_up_after else pause
 
 
-def _ended_early() -> Error:
-    """Why a stream ended that had no error and no ended job."""
-    return Unavailable("the server ended the watch before the end of the job", code="UNAVAILABLE")
-
-
-def _read_stream(connection: Connection, watch: Attachments, screen: Progress) -> Error:
-    """One stream to its end, and why it ended."""
-    try:
-        for message in connection.stream(watch.request):
-            watch.handle(message)
-            screen.show(message)
-    except Error as error:
-        return error
-    return _ended_early()
-
-
-def _is_broken_stream(why: Error) -> bool:
-    end = (why.code, bool(why.reason))
-    return why.code == "UNAVAILABLE" or end in {("CANCELLED", False), ("RESOURCE_EXHAUSTED", True)}
-
-
 @dataclass(frozen=True)
 class Update:
     """One message of a watch.
@@ -149,14 +138,12 @@ class Update:
     points: list[Point]
 
 
-async def watch_updates(connection: Connection, name: str) -> AsyncIterator[Update | Any]:
-    """`watch_job` over gRPC's asyncio channel, without a thread: updates until the job has ended,
-    then the job itself."""
-    watch = Attachments(name)
+async def watch_updates(connection: Connection, watch: Attachments) -> AsyncIterator[Update]:
+    """`watch_job` over gRPC's asyncio channel, without a thread: updates until the job has ended."""
     state = "queued"
     while True:
-        why = _ended_early()
-        async with open_channel(connection.address, connection.security, grpc.aio) as channel:
+        why = _EARLY_END
+        async with connection.open_channel(grpc.aio) as channel:
             stub = ensemble_pb2_grpc.EnsembleServiceStub(channel)
             try:
                 async for message in stub.WatchEnsembleJob(
@@ -171,7 +158,6 @@ async def watch_updates(connection: Connection, name: str) -> AsyncIterator[Upda
             except grpc.RpcError as error:
                 why = connection.error_of(error)
         if watch.ended is not None:
-            yield watch.ended
             return
         await asyncio.sleep(watch.pause_after(why))
         await asyncio.to_thread(_connect_again, connection)

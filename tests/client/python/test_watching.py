@@ -86,20 +86,6 @@ def test_the_main_thread_leaves_locks_to_others(
     assert users and threading.get_ident() not in users
 
 
-def test_ctrl_c_in_a_trace_leaves_a_client_that_works(home: Home) -> None:
-    program = (
-        "import ballpiston, os, signal, threading\n"
-        "client = ballpiston.connect()\n"
-        "for wait in range(1, 10):\n"
-        "    threading.Timer(0.03 * wait, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
-        "    try:\n"
-        "        list(client.trace(rho=0.5296, delta=0.1, events=1e6))\n"
-        "    except KeyboardInterrupt:\n"
-        "        print(len(client.jobs(limit=0)), client.status().state)\n"
-    )
-    assert home.python(program).communicate(timeout=LIMIT) == (9 * "0 serving\n", "")
-
-
 def test_a_thread_watches_after_the_end_of_the_main_thread(home: Home) -> None:
     program = (
         "import ballpiston, threading\n"
@@ -141,10 +127,9 @@ def text_of(terminal: int) -> str:
 
 
 def test_a_bar_shows_points_an_estimate_and_lost_connections() -> None:
-    bar: Any = Bar()
+    progress: Any = Progress()
     lines: list[tuple[float, str]] = []
-    bar.show = lambda *line: lines.append(line)
-    progress = Progress(bar)
+    progress.draw = lambda *line: lines.append(line)
     message: Any = ensemble_pb2.WatchEnsembleJobResponse()
     snapshot = message.snapshot
     snapshot.progress.points, snapshot.progress.points_done = 4, 1
@@ -166,7 +151,7 @@ def test_a_bar_is_shorter_than_a_line_of_the_terminal(monkeypatch: pytest.Monkey
         monkeypatch.setattr("sys.stderr", terminal)
         for columns in (60, 30, 0):  # 0: unknown
             termios.tcsetwinsize(there, (24, columns))
-            bar.show(0.5, "4/4 points" + 80 * ".")
+            bar.draw(0.5, "4/4 points" + 80 * ".")
     assert [len(line) for line in text_of(here).split("\r")] == [0, 59, 29, 79]
     monkeypatch.setattr("sys.stderr", None)
     assert not has_terminal()
@@ -180,7 +165,7 @@ def test_the_time_left_does_not_count_the_time_in_the_queue(
     monkeypatch.setattr("tqdm.std.time", lambda: now)
     bar = _TqdmBar(tqdm)
     for now, fraction in ((0.0, 0.0), (1000.0, 0.0), (1010.0, 0.5)):
-        bar.show(fraction, "")
+        bar.draw(fraction, "")
     assert "[00:10<00:10]" in capsys.readouterr().err
 
 
@@ -233,7 +218,7 @@ def test_a_watch_passes_the_last_resume_token_on() -> None:
         [update("a", RUNNING), update("b", RUNNING)], [], [update("c", SUCCEEDED)]
     )
     at_once = Attachments(JOB, first=0, longest=0, give_up_after=LIMIT)
-    job = watch_job(server, at_once, Progress(None))
+    job = watch_job(server, at_once, Progress())
     assert job.state == SUCCEEDED
     assert server.tokens == ["", "b", "b"]
 
@@ -242,7 +227,7 @@ def test_a_watch_that_gives_up_says_why() -> None:
     server: Any = ScriptedServer()
     hasty = Attachments(JOB, first=0.001, longest=0, give_up_after=0)
     with pytest.raises(Unavailable, match="gave up watching after 0 s.*ended the watch before"):
-        watch_job(server, hasty, Progress(None))
+        watch_job(server, hasty, Progress())
 
 
 def test_a_watch_waits_for_a_busy_server() -> None:
