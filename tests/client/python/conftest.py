@@ -28,11 +28,6 @@ LIMIT = 900.0  # seconds: the longest wait for a condition or a program
 # A shell starts background commands with SIGINT ignored, and their child processes inherit that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# Variables of the user that runs the tests must not change them.
-FOREIGN = [
-    name for name in os.environ if name.startswith("BALLPISTON_") and name != "BALLPISTON_BIN"
-]
-
 
 def wait_until(condition: Callable[[], Any]) -> Any:
     """The first true value of the condition."""
@@ -52,28 +47,27 @@ class Home:
         assert programs, "the variable BALLPISTON_BIN has to name the folder of the programs"
         self.programs = Path(programs).resolve()
         self.folder = folder
-        self.variables = {
-            "BALLPISTON_PROGRAM": str(self.programs / "ballpiston"),
-            "BALLPISTON_PYTHON": sys.executable,
-            "HOME": str(folder),
-            "XDG_CONFIG_HOME": str(folder / "config"),
-            "XDG_RUNTIME_DIR": str(folder),
-            "XDG_STATE_HOME": str(folder),
-        }
 
     def enter(self, patch: pytest.MonkeyPatch) -> None:
-        """Makes this the home of the test's process."""
-        for name in FOREIGN:
-            patch.delenv(name, raising=False)
-        for name, value in self.variables.items():
-            patch.setenv(name, value)
+        """Makes this the home of the test's process, without other settings of the user."""
+        for name in [n for n in os.environ if n.startswith("BALLPISTON_") and n[11:] != "BIN"]:
+            patch.delenv(name)
+        patch.setenv("BALLPISTON_PROGRAM", str(self.programs / "ballpiston"))
+        patch.setenv("BALLPISTON_PYTHON", sys.executable)
+        patch.setenv("XDG_CONFIG_HOME", str(self.folder / "config"))
+        for name in ("HOME", "XDG_RUNTIME_DIR", "XDG_STATE_HOME"):
+            patch.setenv(name, str(self.folder))
+
+    def run(self, *words: str, **options: Any) -> subprocess.CompletedProcess[str]:
+        """The command line, at its end."""
+        command = [str(self.programs / "ballpiston"), *words]
+        return subprocess.run(command, capture_output=True, text=True, timeout=LIMIT, **options)
 
     def command(self, *words: str) -> str:
         """What the command line prints."""
-        program = str(self.programs / "ballpiston")
-        return subprocess.run(
-            [program, *words], check=True, stdout=subprocess.PIPE, text=True, timeout=LIMIT
-        ).stdout
+        ended = self.run(*words)
+        assert ended.returncode == 0, ended.stderr
+        return ended.stdout
 
     def python(self, program: str, *arguments: str, **options: Any) -> subprocess.Popen[str]:
         """Another process that runs a Python program."""
@@ -100,18 +94,14 @@ class Home:
             assert ended, f"the server has not ended after {LIMIT} seconds"
 
 
-@pytest.fixture(scope="session")
-def shared_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    home = Home(tmp_path_factory.mktemp("home"))
-    yield home
-    home.end_server(signal.SIGTERM)
-
-
-@pytest.fixture(autouse=True)
-def home(shared_home: Home, monkeypatch: pytest.MonkeyPatch) -> Home:
+@pytest.fixture(scope="session", autouse=True)
+def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     """One server for all tests that do not end it."""
-    shared_home.enter(monkeypatch)
-    return shared_home
+    home = Home(tmp_path_factory.mktemp("home"))
+    with pytest.MonkeyPatch.context() as patch:
+        home.enter(patch)
+        yield home
+    home.end_server(signal.SIGTERM)
 
 
 @pytest.fixture
@@ -123,7 +113,7 @@ def own_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Home]:
     home.end_server(signal.SIGKILL)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def client(home: Home) -> Iterator[ballpiston.Client]:
     with ballpiston.connect(timeout=LIMIT) as client:
         yield client
@@ -154,9 +144,6 @@ def endless(client: ballpiston.Client) -> Iterator[ballpiston.Job]:
 
 
 @pytest.fixture(scope="session")
-def first_hits(shared_home: Home) -> Iterator[ballpiston.Result]:
+def first_hits(client: ballpiston.Client) -> ballpiston.Result:
     """A result with histograms and curves, four points."""
-    with pytest.MonkeyPatch.context() as patch:
-        shared_home.enter(patch)
-        with ballpiston.connect(timeout=LIMIT) as client:
-            yield client.run(**FIRST_HITS, fresh=True)
+    return client.run(**FIRST_HITS, fresh=True)

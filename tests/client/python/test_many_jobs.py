@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import csv
 import re
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -62,18 +61,19 @@ def test_an_error_of_a_table_names_the_column_or_the_row(points: object, message
         ballpiston.specification("first-hit", points=points, **OF_THE_TABLE)
 
 
-def test_a_labelled_job_is_found_relabelled_and_selected(home: Home) -> None:
-    with ballpiston.connect() as client:
-        labels = {"run": "found", "who": "pilot"}
-        job = client.submit(**hits(101), labels=labels)
-        assert job.labels == labels
-        other = client.submit(**hits(102), labels={"run": "found"})
-        found = client.jobs(labels={"run": "found"})
-        assert [j.name for j in found] == [other.name, job.name]
-        assert [j.name for j in client.jobs(labels=labels)] == [job.name]
-        assert job.label(who=None, day="7").labels == {"run": "found", "day": "7"}
-        for labelled in (job, other):
-            labelled.watch(progress=False)
+def test_a_labelled_job_is_found_relabelled_and_selected(
+    home: Home, client: ballpiston.Client
+) -> None:
+    labels = {"run": "found", "who": "pilot"}
+    job = client.submit(**hits(101), labels=labels)
+    assert job.labels == labels
+    other = client.submit(**hits(102), labels={"run": "found"})
+    found = client.jobs(labels={"run": "found"})
+    assert [j.name for j in found] == [other.name, job.name]
+    assert [j.name for j in client.jobs(labels=labels)] == [job.name]
+    assert job.label(who=None, day="7").labels == {"run": "found", "day": "7"}
+    for labelled in (job, other):
+        labelled.watch(progress=False)
     assert home.command("label", job.name, "day=", "a.b=x/y") == f"{job.name} a.b=x/y run=found\n"
     assert home.command("list", "--label", "run=found", "--format", "csv").count("\n") == 3
     assert home.command("watch", "--label", "run=found", "--exec", 'echo "$BALLPISTON_JOB_STATE"')
@@ -82,20 +82,25 @@ def test_a_labelled_job_is_found_relabelled_and_selected(home: Home) -> None:
     assert sorted(deleted.split("\n")) == ["", *sorted(f"{j.name} deleted" for j in (job, other))]
 
 
-def test_a_list_has_all_jobs(client: ballpiston.Client) -> None:
-    for _ in range(51):
-        client.submit(**FIRST_HITS, fresh=True, labels={"run": "many"})
-    assert len(client.jobs(labels={"run": "many"})) == 51
+def test_a_list_of_many_pages_is_whole(
+    client: ballpiston.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in ("client", "job"):
+        monkeypatch.setattr(f"ballpiston.{module}._PAGE", 2)
+    question = {**FIRST_HITS, "fresh": True, "labels": {"run": "pages"}}
+    jobs = [client.submit(**question) for _ in range(5)]
+    for limit, length in ((None, 5), (3, 3), (2, 2)):
+        assert len(client.jobs(labels={"run": "pages"}, limit=limit)) == length
+    assert [point.index for point in jobs[0].watch(progress=False)] == [0, 1, 2, 3]
 
 
 def test_cancel_by_label_cancels_only_after_yes(home: Home, endless: ballpiston.Job) -> None:
     endless.label(run="endless")
-    words = [home.programs / "ballpiston", "cancel", "--label", "run=endless"]
-    asked = subprocess.run(words, input="n\n", capture_output=True, text=True, check=False)
+    asked = home.run("cancel", "--label", "run=endless", input="n\n")
     assert "cancel 1 job of local? [y/N]" in asked.stderr
     assert "nothing was changed" in asked.stderr
     assert not endless.has_ended
-    subprocess.run(words, input="y\n", text=True, check=True)
+    home.run("cancel", "--label", "run=endless", input="y\n", check=True)
     assert endless.state in ("cancelling", "cancelled")
 
 
@@ -116,16 +121,15 @@ def test_an_extended_job_has_the_bytes_of_one_long_run(client: ballpiston.Client
 
 
 def test_the_estimates_of_many_jobs_are_one_table(
-    home: Home, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    home: Home, client: ballpiston.Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with ballpiston.connect() as client:
-        jobs = [client.submit(**hits(s), labels={"run": "table"}) for s in (106, 107)]
-        results = [job.watch(progress=False) for job in jobs]
-        listed = client.jobs(labels={"run": "table"})
-        with monkeypatch.context() as patch:
-            patch.setattr(ballpiston.Job, "refresh", None)  # what the list said is enough
-            table = ballpiston.estimates_table(listed)
-        basic = jobs[0].result_in(ensemble_pb2.ListResultsRequest.BASIC)
+    jobs = [client.submit(**hits(s), labels={"run": "table"}) for s in (106, 107)]
+    results = [job.watch(progress=False) for job in jobs]
+    listed = client.jobs(labels={"run": "table"})
+    with monkeypatch.context() as patch:
+        patch.setattr(ballpiston.Job, "refresh", None)  # what the list said is enough
+        table = ballpiston.estimates_table(listed)
+    basic = jobs[0].result_in(ensemble_pb2.ListResultsRequest.BASIC)
     assert results[0].messages[0].histograms and not basic.messages[0].histograms
     times = table["value"][table["name"] == "mean_hit_time"]
     assert set(times) == {time for result in results for time in result["mean_hit_time"]}
@@ -146,8 +150,7 @@ def test_an_export_without_a_job_or_without_results_fails(
     home: Home, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "none.csv"
-    words = [home.programs / "ballpiston", "export", "--label", "zz=1", "--out", out]
-    ended = subprocess.run(words, capture_output=True, text=True, check=False)
+    ended = home.run("export", "--label", "zz=1", "--out", str(out))
     assert ended.returncode == 5 and "no job has these labels" in ended.stderr
     assert not out.exists()
 
@@ -218,16 +221,17 @@ def test_an_event_loop_watches_many_jobs(client: ballpiston.Client) -> None:
         asyncio.run(cancelled.result_async())
 
 
-def test_the_collisions_of_a_job_are_read_as_records(home: Home, tmp_path: Path) -> None:
+def test_the_collisions_of_a_job_are_read_as_records(
+    home: Home, client: ballpiston.Client, tmp_path: Path
+) -> None:
     words = "first-hit --rho 0.53 --delta 0.2 --epsilon 0.125 --exponent 1 --samples 5000".split()
-    with ballpiston.connect() as client:
-        question: dict[str, Any] = dict(rho=0.53, delta=0.2, epsilon=0.125, exponent=1)
-        records = client.sample("first-hit", **question, samples=5_000, verify=True).all()
-        result = client.run("first-hit", **question, samples=5_000, progress=False)
-        parts = client.sample("first-hit", **question, samples=5_000)
-        assert sum(map(len, parts)) == 5_000
-        parts.close()
-        assert list(parts) == []
+    question: dict[str, Any] = dict(rho=0.53, delta=0.2, epsilon=0.125, exponent=1)
+    records = client.sample("first-hit", **question, samples=5_000, verify=True).all()
+    result = client.run("first-hit", **question, samples=5_000, progress=False)
+    parts = client.sample("first-hit", **question, samples=5_000)
+    assert sum(map(len, parts)) == 5_000
+    parts.close()
+    assert list(parts) == []
     assert records["sample"].tolist() == list(range(5_000))
     assert records["time"].mean() == pytest.approx(result["mean_hit_time"][0], rel=1e-12)
     np.testing.assert_allclose(records["ball_vx_after"], records["piston_vx"], atol=1e-14)

@@ -4,6 +4,7 @@ generated modules beside those of other packages."""
 from __future__ import annotations
 
 import ast
+import os
 import re
 import shutil
 import subprocess
@@ -12,7 +13,7 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
-from conftest import PROJECT
+from conftest import LIMIT, PROJECT, Home
 
 import ballpiston
 
@@ -67,22 +68,7 @@ def test_the_types_are_complete() -> None:
 # Generated modules
 
 
-def output_of(program: str, *folders: Path) -> str:
-    """What a fresh interpreter prints, with these folders in front of the package."""
-    package = Path(ballpiston.__file__).parents[1]
-    path = ":".join(str(folder) for folder in [*folders, package])
-    done = subprocess.run(
-        [sys.executable, "-c", program], env={"PYTHONPATH": path}, capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout.strip()
-
-
-def test_a_module_of_the_protocol_can_be_imported_first() -> None:
-    assert output_of("import ballpiston.v1.spec_pb2 as m; print(m.EnsembleSpec.FIRST_HIT)") == "3"
-
-
-def test_the_package_has_its_own_copy_of_google_rpc() -> None:
+def test_the_package_has_its_own_copy_of_google_rpc(home: Home) -> None:
     """Without googleapis-common-protos nothing is put into the package google."""
     program = (
         "import sys\n"
@@ -91,13 +77,16 @@ def test_the_package_has_its_own_copy_of_google_rpc() -> None:
         "from ballpiston._google_rpc import status_pb2\n"
         "print(status_pb2.__name__, 'google.rpc.status_pb2' in sys.modules)"
     )
-    assert output_of(program) == "ballpiston._google_rpc.status_pb2 False"
+    printed = "ballpiston._google_rpc.status_pb2 False\n"
+    assert home.python(program).communicate(timeout=LIMIT) == (printed, "")
 
 
 @pytest.mark.skipif(shutil.which("protoc") is None, reason="protoc is not installed")
 @pytest.mark.parametrize("first", ["ballpiston", "google.rpc.status_pb2"])
 @pytest.mark.parametrize("package", ["x", r"\1"], ids=["other options", "same options"])
-def test_installed_modules_of_google_rpc_are_used(first: str, package: str, tmp_path: Path) -> None:
+def test_installed_modules_of_google_rpc_are_used(
+    first: str, package: str, home: Home, tmp_path: Path
+) -> None:
     """googleapis-common-protos has the same files with other options, which the pool of descriptors
     rejects beside ours. Modules that protoc generates from our protos have the same options."""
     (tmp_path / "google" / "rpc").mkdir(parents=True)
@@ -115,4 +104,7 @@ def test_installed_modules_of_google_rpc_are_used(first: str, package: str, tmp_
         "job = ballpiston.v1.ensemble_pb2.EnsembleJob(error=status_pb2.Status(message='m'))\n"
         "print(job.error.message)"
     )
-    assert output_of(program, tmp_path) == f"{tmp_path}/google/rpc/status_pb2.py\nm"
+    path = f"{tmp_path}:{Path(ballpiston.__file__).parents[1]}"
+    printed = f"{tmp_path}/google/rpc/status_pb2.py\nm\n"
+    reader = home.python(program, env=os.environ | {"PYTHONPATH": path})
+    assert reader.communicate(timeout=LIMIT) == (printed, "")
