@@ -89,6 +89,7 @@ def test_numbers_and_names_may_be_written_in_many_ways() -> None:
     ("keywords", "error", "text"),
     [
         ({"experiment": "frist-hit"}, ValueError, "did you mean 'first-hit'"),
+        ({"model": "model-unspecified"}, ValueError, "is not a value of model"),
         ({"samples": np.timedelta64(5, "s")}, TypeError, "samples has to be a number"),
         ({"samples": 1.5}, ValueError, "whole number"),
         ({"samples": 10, "tolerance": 0.1}, TypeError, "samples and tolerance exclude each other"),
