@@ -98,11 +98,21 @@ def test_a_program_says_by_its_exit_code_whether_a_retry_helps(
     assert exit_code_of(not_started) == code
 
 
-PRINTER = (
-    "import pathlib, sys\n"
-    "from ballpiston.command import run_program\n"
-    r"sys.exit(run_program(lambda _: [pathlib.Path('\xfc')], []))"
-)
+def program(result: str) -> str:
+    return (
+        "import pathlib, signal, sys\n"
+        "from ballpiston.command import run_program\n"
+        f"sys.exit(run_program(lambda _: {result}, []))"
+    )
+
+
+def test_sigterm_interrupts_a_program_without_a_traceback(home: Home) -> None:
+    interrupted = home.python(program("signal.raise_signal(signal.SIGTERM) or []"))
+    assert interrupted.communicate(timeout=LIMIT) == ("", "")
+    assert interrupted.returncode == 130
+
+
+PRINTER = program(r"[pathlib.Path('\xfc')]")
 
 
 def test_a_program_prints_names_of_files_that_its_encoding_cannot_spell(home: Home) -> None:
