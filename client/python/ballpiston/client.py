@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import sys
 import uuid
 from collections.abc import Iterable, Iterator, Mapping
@@ -230,10 +229,14 @@ class Client:
         )
         if limit is not None and (limit := whole_number("limit", limit)) < 0:
             raise ValueError(f"limit is {limit}; permitted: 0 or more, or None for all jobs")
-        request.page_size = _PAGE if limit is None else min(_PAGE, limit)
+        jobs: list[Job] = []
         pages = self._connection.pages(request)
-        messages = itertools.islice((job for page in pages for job in page.jobs), limit)
-        return [Job(self._connection, message) for message in messages]
+        while limit is None or len(jobs) < limit:
+            request.page_size = _PAGE if limit is None else min(_PAGE, limit - len(jobs))
+            if (page := next(pages, None)) is None:
+                break
+            jobs += [Job(self._connection, message) for message in page.jobs]
+        return jobs
 
     def analytic(
         self,
@@ -276,9 +279,8 @@ class Client:
         bodies, then the events in the order of time.
 
         The dicts are the lines of `ballpiston trace`: "time", "event" (such as "ball_piston"),
-        "free_time", and positions, velocities and energies of the bodies that take part.
-        The server computes events only as fast as they are read. The same call gives the same
-        orbit.
+        "free_time", and positions, velocities and energies of the bodies that take part. The
+        server computes events only as fast as they are read. The same call gives the same orbit.
 
         Args:
             rho, delta: of the cell.

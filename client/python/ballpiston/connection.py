@@ -25,7 +25,7 @@ import grpc
 
 from ballpiston._version import __version__
 from ballpiston.channel_security import ChannelSecurity, Token, check_security, credentials_of
-from ballpiston.errors import Error, Unavailable, from_rpc_error
+from ballpiston.errors import Error, ResultsExpired, Unavailable, from_rpc_error
 from ballpiston.private_server import private_address
 from ballpiston.server_address import grpc_target, is_socket, literal_address
 from ballpiston.v1.analytic_pb2_grpc import AnalyticServiceStub
@@ -119,7 +119,11 @@ class Connection:
 
     def call(self, request: Any) -> Any:
         """The answer to a call that may be repeated."""
-        return self._repeated(lambda: self.call_once(request))
+        try:
+            return self._repeated(lambda: self.call_once(request))
+        except ResultsExpired as error:
+            error.args = (f"{error}\nTo compute them again: client.run(job.specification)",)
+            raise
 
     def pages(self, request: Any) -> Iterator[Any]:
         """The answers to the request for a list and to those for its next pages."""
@@ -203,7 +207,8 @@ class Connection:
 
 
 def connection_hint(address: str, security: ChannelSecurity, message: str) -> str:
-    """A line of its own for an error with this text; empty if nothing is known."""
+    """What to try, on a line of its own, after an error with this text; empty if nothing is known.
+    The texts of gRPC 1.51 and OpenSSL 3 do not say it."""
     kind = "socket" if is_socket(address) else "tls" if security.has_tls else "plain"
     known = f"in {security.ca}" if security.ca else "that this system knows"
     for of, pattern, hint in _HINTS:

@@ -2,9 +2,6 @@
 
 Mistakes in a call itself, such as a wrong keyword or a text in place of a number, are TypeError and
 ValueError. They are raised before anything is sent.
-
-The server attaches a google.rpc.Status with an ErrorInfo (the reason, as one word) and, if the
-request is wrong, a BadRequest with every violation.
 """
 
 import re
@@ -15,9 +12,7 @@ from ballpiston._google_rpc import error_details_pb2, status_pb2
 
 
 class Error(Exception):
-    """What a server answered in place of a result, or why no server answered. The text is that of
-    the program `ballpiston`: MESSAGE (REASON), or FIELD: DESCRIPTION (REASON), or a line for each
-    violation.
+    """What a server answered in place of a result, or why no server answered.
 
     Attributes:
         reason: one word for programs, such as "JOB_NOT_FOUND"; empty if the server gave none, for
@@ -38,25 +33,12 @@ class Error(Exception):
         code: str = "",
         retry_delay: float = 0.0,
     ) -> None:
+        super().__init__(message)
         self.reason = reason
         self.metadata = dict(metadata or {})
         self.violations = list(violations)
         self.code = code
         self.retry_delay = retry_delay
-        super().__init__(self._text(message))
-
-    def _text(self, message: str) -> str:
-        reason = f" ({self.reason})" if self.reason else ""
-        stated = self.metadata.get("violations_left_out", "")
-        left_out = int(stated) if stated.isdecimal() else 0
-        count = len(self.violations) + left_out
-        if count == 0:
-            return message + reason
-        lines = [f"{where}: {what}" for where, what in self.violations]
-        if count == 1 and left_out == 0:
-            return lines[0] + reason
-        more = f"\n  and {left_out} more" if left_out > 0 else ""
-        return f"not valid, {count} violations{reason}:" + "".join(f"\n  {x}" for x in lines) + more
 
 
 class InvalidArgument(Error, ValueError):
@@ -128,6 +110,22 @@ def facts_of(status: Any) -> dict[str, Any]:
     return facts
 
 
+def text_of(message: str, facts: Mapping[str, Any]) -> str:
+    """The text of an error with these facts, as the program `ballpiston` prints it: MESSAGE
+    (REASON), or FIELD: DESCRIPTION (REASON), or a line for each violation."""
+    reason = f" ({facts['reason']})" if facts.get("reason") else ""
+    stated = facts.get("metadata", {}).get("violations_left_out", "")
+    left_out = int(stated) if stated.isdecimal() else 0
+    lines = [f"{where}: {what}" for where, what in facts.get("violations", [])]
+    count = len(lines) + left_out
+    if count == 0:
+        return message + reason
+    if count == 1 and left_out == 0:
+        return lines[0] + reason
+    more = f"\n  and {left_out} more" if left_out > 0 else ""
+    return f"not valid, {count} violations{reason}:" + "".join(f"\n  {x}" for x in lines) + more
+
+
 def from_rpc_error(rpc_error: Any) -> Error:
     """The exception for a grpc.RpcError."""
     code: str = rpc_error.code().name
@@ -138,10 +136,7 @@ def from_rpc_error(rpc_error: Any) -> Error:
         facts = {}
     message = rpc_error.details() or ""
     message = message if any(facts.values()) else _plain_text(code, message)
-    error = _class_of(code, facts)(message, code=code, **facts)
-    if isinstance(error, ResultsExpired):
-        error.args = (f"{error}\nTo compute them again: client.run(job.specification)",)
-    return error
+    return _class_of(code, facts)(text_of(message, facts), code=code, **facts)
 
 
 def _class_of(code: str, facts: Mapping[str, Any]) -> type[Error]:

@@ -13,7 +13,7 @@ from operator import attrgetter
 from typing import Any, cast
 
 from ballpiston.connection import Connection
-from ballpiston.errors import Error, NotFound, facts_of
+from ballpiston.errors import Error, NotFound, facts_of, text_of
 from ballpiston.fields import shown, spelled, value_of
 from ballpiston.parameter_lists import truth_value
 from ballpiston.progress import fraction_of, progress_on_screen
@@ -82,7 +82,7 @@ class Job:
         lambda job: fraction_of(job.progress), "The share of the work that is done, 0 to 1."
     )
     error = shown(
-        lambda job: str(Error(job.error.message, **facts_of(job.error))),
+        lambda job: text_of(job.error.message, facts_of(job.error)),
         "Why it failed; empty if it did not.",
     )
     pinned = shown(lambda job: bool(job.pinned), "Whether its results do not expire.")
@@ -189,9 +189,7 @@ class Job:
         return await asyncio.to_thread(self.result)
 
     def result(self) -> Result:
-        """The points that are finished now. It does not wait. Raises ResultsExpired: the server
-        keeps only the specification: `client.run(job.specification)` computes the same results
-        again."""
+        """The points that are finished now. It does not wait. Raises ResultsExpired."""
         self.refresh()
         return self.result_in(ensemble_pb2.ListResultsRequest.FULL)
 
@@ -232,9 +230,9 @@ class Job:
         self._connection.call_once(ensemble_pb2.DeleteEnsembleJobRequest(name=self.name))
 
     def __repr__(self) -> str:
-        progress, state = self.message.progress, spelled(self.message, "state")
+        progress = self.message.progress
         return (
-            f"<job {self.name}: {self.experiment}, {state}, "
+            f"<job {self.name}: {self.experiment}, {spelled(self.message, 'state')}, "
             f"{progress.points_done} of {progress.points} points>"
         )
 
@@ -272,7 +270,8 @@ class Job:
         error_class: type[JobNotSucceeded] = JobCancelled if state == "cancelled" else JobFailed
         status = self.message.error
         text = f"{self.name} {state}" + (f": {status.message}" if status.message else "")
-        error = error_class(text, **facts_of(status))
+        facts = facts_of(status)
+        error = error_class(text_of(text, facts), **facts)
         error.job = self
         raise error
 

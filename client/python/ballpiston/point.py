@@ -69,7 +69,7 @@ class Point:
     parameters = shown(
         parameters_of, "The values of the parameters that the experiment uses, `cells` as text."
     )
-    estimates = shown(
+    estimates: dict[str, Estimate] = shown(
         lambda point: {message.name: _estimate(message) for message in point.estimates},
         "All of them by name, in the order of the answer.",
     )

@@ -245,7 +245,8 @@ def load(path: str | os.PathLike[str]) -> Result:
     """A result from a JSON file that `result.save` or `ballpiston result JOB --format json` wrote.
     Needs no server. Raises ValueError: the file is not a saved result, for instance one with arrays
     (.npz), which numpy.load reads; OSError: the file cannot be read."""
-    data = Path(path).read_bytes()
+    path = Path(path)
+    data = path.read_bytes()
     if data.startswith(b"PK\x03\x04"):  # an archive
         raise ValueError(
             f"{path} contains arrays: numpy.load reads it. ballpiston.load reads the JSON files "

@@ -89,9 +89,15 @@ def test_a_list_of_many_pages_is_whole(
         monkeypatch.setattr(f"ballpiston.{module}._PAGE", 2)
     question = {**FIRST_HITS, "fresh": True, "labels": {"run": "pages"}}
     jobs = [client.submit(**question) for _ in range(5)]
-    for limit, length in ((None, 5), (3, 3), (2, 2)):
-        assert len(client.jobs(labels={"run": "pages"}, limit=limit)) == length
     assert [point.index for point in jobs[0].watch(progress=False)] == [0, 1, 2, 3]
+    sizes: list[int] = []
+    call = client._connection.call
+    monkeypatch.setattr(
+        client._connection, "call", lambda asked: sizes.append(asked.page_size) or call(asked)
+    )
+    for limit, length in ((None, 5), (1e19, 5), (2, 2), (3, 3)):
+        assert len(client.jobs(labels={"run": "pages"}, limit=limit)) == length
+    assert sizes[-2:] == [2, 1]
 
 
 def test_cancel_by_label_cancels_only_after_yes(home: Home, endless: ballpiston.Job) -> None:

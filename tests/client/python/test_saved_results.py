@@ -210,8 +210,8 @@ def test_a_document_of_another_program_can_be_loaded(
 )
 def test_other_files_are_not_results(text: str, tmp_path: Path) -> None:
     (tmp_path / "other.json").write_text(text)
-    with pytest.raises(ValueError, match="is not a saved result"):
-        ballpiston.load(tmp_path / "other.json")
+    with pytest.raises(ValueError, match="/other.json is not a saved result"):
+        ballpiston.load(next(os.scandir(tmp_path)))
 
 
 def test_links_permissions_and_pipes_stay(tmp_path: Path) -> None:
