@@ -10,8 +10,7 @@
 
 `connect()` starts the user's private server if none is named. `help(ballpiston.specification)`
 lists experiments and parameters with their units and ranges, `help(ballpiston.Result)` what an
-answer has.
-The messages and stubs of the protocol are in ballpiston.v1.
+answer has. The messages and stubs of the protocol are in ballpiston.v1.
 """
 
 from ballpiston._version import __version__
@@ -34,8 +33,8 @@ from ballpiston.errors import (
     Unavailable,
 )
 from ballpiston.estimates_table import estimates_table
-from ballpiston.measured_functions import Curve, Histogram
 from ballpiston.job import Job, JobCancelled, JobFailed, JobNotSucceeded
+from ballpiston.measured_functions import Curve, Histogram
 from ballpiston.plan import Plan
 from ballpiston.point import Estimate, Point
 from ballpiston.result import Result, load

@@ -133,11 +133,12 @@ class Token:
 
 
 def user_folder(variable: str, default: str) -> Path:
-    """The folder `ballpiston` in the folder that an XDG variable names, else in `default` below the
-    home folder: HOME if it is absolute, else the user's entry. Raises OSError: there is no entry.
-    """
-    root, home = (os.environ.get(name, "") for name in (variable, "HOME"))
+    """The user's folder `ballpiston`, of tokens or of the config file: in the folder that the XDG
+    variable names (a relative path is ignored), else in `default` below the home folder: HOME if it
+    is absolute, else the user's entry. Raises OSError: there is no entry."""
+    root = os.environ.get(variable, "")
     if not root.startswith("/"):
+        home = os.environ.get("HOME", "")
         try:
             home = home if home.startswith("/") else pwd.getpwuid(os.getuid()).pw_dir
         except KeyError:

@@ -19,9 +19,8 @@ _START_TIME = 120.0  # seconds; the program itself gives up after a minute
 
 
 def private_address(program: str) -> str:
-    """The address of the user's private server, unix:PATH. `program` is the path of the program
-    `ballpiston`, which starts the server if it does not run. Raises NoPrivateServer: the program
-    cannot be run, or cannot start the server."""
+    """The address of the user's private server, unix:PATH. `program` is the path of `ballpiston`.
+    Raises NoPrivateServer: the program cannot be run, or cannot start the server."""
     try:
         answer = subprocess.run(
             [program, "server", "address"],
@@ -43,7 +42,7 @@ def private_address(program: str) -> str:
 
 
 def find_program() -> str:
-    """The path of the program `ballpiston`: what BALLPISTON_PROGRAM names, else PREFIX/bin/ballpiston
+    """The path of the program `ballpiston`: what BALLPISTON_PROGRAM names, else that in PREFIX/bin
     for a package in PREFIX/lib/python3/dist-packages or, in a folder of a build, in PREFIX/python,
     else the one in PATH. Raises NoPrivateServer: there is none."""
     if named := os.environ.get("BALLPISTON_PROGRAM"):

@@ -19,8 +19,9 @@ _BAR_WIDTH = 20
 class Progress:
     """Follows a watch, and shows nothing."""
 
-    _done = ""  # points
-    _fraction = 0.0
+    def __init__(self) -> None:
+        self._fraction = 0.0
+        self._text = ""  # such as "1/4 points"
 
     def show(self, message: Any) -> None:
         """Shows a message of a watch."""
@@ -29,14 +30,14 @@ class Progress:
             return
         points = list(message.snapshot.points) or list(message.snapshot.finished_points)[-1:]
         self._fraction = fraction_of(progress)
-        self._done = f"{progress.points_done}/{progress.points} points"
+        self._text = f"{progress.points_done}/{progress.points} points"
         first = next(iter(Point(points[0]).estimates.values()), None) if points else None
-        self.draw(self._fraction, self._done if first is None else f"{self._done}  {first}")
+        self.draw(self._fraction, self._text if first is None else f"{self._text}  {first}")
 
     def show_pause(self, is_busy: bool, pause: float) -> None:
         """Shows that the stream broke and that the next stream begins after `pause` seconds."""
         why = "server busy" if is_busy else "no answer"
-        self.draw(self._fraction, f"{self._done}  {why}, retrying in {pause:.1f} s")
+        self.draw(self._fraction, f"{self._text}  {why}, retrying in {pause:.1f} s")
 
     def draw(self, fraction: float, text: str) -> None:
         """Draws the bar, in place of the last one."""
@@ -51,7 +52,9 @@ class Progress:
 class Bar(Progress):
     """A line on standard error that every update overwrites."""
 
-    _width = 0
+    def __init__(self) -> None:
+        super().__init__()
+        self._width = 0
 
     def draw(self, fraction: float, text: str) -> None:
         marks = int(min(max(fraction, 0.0), 1.0) * _BAR_WIDTH)
@@ -79,6 +82,7 @@ def _columns() -> int:
 
 class _TqdmBar(Progress):
     def __init__(self, tqdm: Any) -> None:
+        super().__init__()
         self._tqdm = tqdm
         self._bar: Any = None
 
@@ -105,7 +109,9 @@ class _TqdmBar(Progress):
 class JsonLines(Progress):
     """Writes each message as one line of JSON to standard error, for programs."""
 
-    _job: dict[str, Any] = {}
+    def __init__(self) -> None:
+        super().__init__()
+        self._job: dict[str, Any] = {}
 
     def show(self, message: Any) -> None:
         if message.HasField("job"):

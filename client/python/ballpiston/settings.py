@@ -27,7 +27,7 @@ def address_and_security(given: Mapping[str, Any]) -> tuple[str, ChannelSecurity
     server. Over a Unix socket, the private server's too, only arguments count. Raises ValueError:
     the private server with TLS or a token, or a config file that is not TOML."""
     settings: dict[str, Any] = {}
-    environment = {name: v for name, variable, _ in _SETTINGS if (v := os.environ.get(variable))}
+    environment = {name: os.environ[v] for name, v, _ in _SETTINGS if os.environ.get(v)}
     for stronger in (_config_file(), environment, given):
         if "token" in stronger or "token_file" in stronger:
             settings.pop("token", None)

@@ -99,7 +99,7 @@ class Attachments:
         """Seconds until the next stream, after one that `why` ended. Raises Error: `why`, if it
         does not say that the stream broke, or if it is time to give up and the server is busy;
         Unavailable: it is time to give up, and no server answers."""
-        broken = {("CANCELLED", False), ("RESOURCE_EXHAUSTED", True)}
+        broken = {("CANCELLED", False), ("RESOURCE_EXHAUSTED", True)}  # code, has a reason
         if why.code != "UNAVAILABLE" and (why.code, bool(why.reason)) not in broken:
             raise why
         pause = self.next_pause(time.monotonic(), why.retry_delay)
@@ -139,7 +139,7 @@ class Update:
 
 
 async def watch_updates(connection: Connection, watch: Attachments) -> AsyncIterator[Update]:
-    """`watch_job` over gRPC's asyncio channel, without a thread: updates until the job has ended."""
+    """`watch_job` over gRPC's asyncio channel, without a thread: updates until the job ends."""
     state = "queued"
     while True:
         why = _EARLY_END
