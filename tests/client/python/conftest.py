@@ -50,8 +50,9 @@ class Home:
 
     def enter(self, patch: pytest.MonkeyPatch) -> None:
         """Makes this the home of the test's process, without other settings of the user."""
-        for name in [n for n in os.environ if n.startswith("BALLPISTON_") and n[11:] != "BIN"]:
-            patch.delenv(name)
+        for name in list(os.environ):
+            if name.startswith("BALLPISTON_") and name != "BALLPISTON_BIN":
+                patch.delenv(name)
         patch.setenv("BALLPISTON_PROGRAM", str(self.programs / "ballpiston"))
         patch.setenv("BALLPISTON_PYTHON", sys.executable)
         patch.setenv("XDG_CONFIG_HOME", str(self.folder / "config"))

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import html
 import math
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
 
 import ballpiston
+from ballpiston.arrays import by_name
 from ballpiston.point import measured_text
 from ballpiston.v1 import server_pb2
 
@@ -32,6 +34,13 @@ def test_a_loop_over_points_may_ask_for_everything_at_each(first_hits: ballpisto
     for array in (first_hits.samples, *first_hits.parameters.values()):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0
+
+
+def test_by_name_walks_once_for_each_name(first_hits: ballpiston.Result) -> None:
+    points = MagicMock()
+    points.__iter__.side_effect = lambda: iter(first_hits.messages)
+    by_name(points, "estimates")
+    assert points.__iter__.call_count == 1 + len(first_hits.names)
 
 
 def test_a_number_gives_one_point(first_hits: ballpiston.Result) -> None:

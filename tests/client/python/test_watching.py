@@ -56,12 +56,17 @@ def test_a_watch_goes_on_after_the_server_was_killed(own_home: Home) -> None:
 def test_ctrl_c_ends_the_watch_and_leaves_the_job(
     home: Home, client: ballpiston.Client, endless: ballpiston.Job
 ) -> None:
-    program = f"import ballpiston, sys; {CONNECT}.job(sys.argv[1]).watch()"
+    program = (
+        "import ballpiston, sys\n"
+        f"client = {CONNECT}\n"
+        "try: client.job(sys.argv[1]).watch()\n"
+        "finally: print(client.status().state)"
+    )
     watcher = home.python(program, endless.name)
     wait_until(lambda: streams(client) == 1)
     watcher.send_signal(signal.SIGINT)
-    _, message = watcher.communicate(timeout=LIMIT)
-    assert watcher.returncode != 0 and "KeyboardInterrupt" in message
+    printed, message = watcher.communicate(timeout=LIMIT)
+    assert printed == "serving\n" and watcher.returncode != 0 and "KeyboardInterrupt" in message
     assert f'The job goes on.\n  watch it again:  client.job("{endless.name}").watch()' in message
     assert not endless.has_ended
     wait_until(lambda: streams(client) == 0)
