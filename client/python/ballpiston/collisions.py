@@ -30,8 +30,7 @@ class Collisions:
     """
 
     def __init__(self, connection: Connection, spec: Any) -> None:
-        request = trace_pb2.SampleCollisionsRequest(spec=spec)
-        self._messages = connection.stream_again(request)
+        self._messages = connection.stream_again(trace_pb2.SampleCollisionsRequest(spec=spec))
 
     def __iter__(self) -> Iterator[Records]:
         return self

@@ -34,7 +34,6 @@ _EXIT_CODES: list[tuple[type[BaseException], int]] = [
     (errors.Error, 4),
     (KeyboardInterrupt, 130),
 ]
-_OTHERS = (OSError, ValueError, MemoryError, TypeError)
 
 
 def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str]) -> int:
@@ -46,7 +45,7 @@ def run_program(main: Callable[[list[str]], Iterable[Path]], arguments: list[str
             _print_name(path)
     except BrokenPipeError:  # the reader has ended
         return 0
-    except (errors.Error, KeyboardInterrupt, *_OTHERS) as error:
+    except (errors.Error, KeyboardInterrupt, OSError, ValueError, MemoryError, TypeError) as error:
         if not isinstance(error, KeyboardInterrupt):
             print(f"ballpiston: {_with_flags(error)}", file=sys.stderr)
         return exit_code_of(error)

@@ -64,8 +64,7 @@ class Plan:
 
 
 def _row(point: Any, model: Any) -> dict[str, Any]:
-    parameters = point.parameters
-    row: dict[str, Any] = {field.name: value for field, value in parameters.ListFields()}
+    row: dict[str, Any] = {field.name: value for field, value in point.parameters.ListFields()}
     row["model"] = spelled(model, "model")
     row["chosen"] = model.model == point.model
     row["answers"] = model.answers

@@ -40,10 +40,9 @@ def grpc_target(address: str) -> str:
         path = address.removeprefix(_SOCKET_SCHEME)
         if set(path) & set("#?,%"):
             raise _bad_address(address, "gRPC cannot use a path with # ? , or %; ")
-        length = len(path.encode())
-        if length > _LONGEST_SOCKET_PATH:
+        if len(path.encode()) > _LONGEST_SOCKET_PATH:
             raise _bad_address(address, f"its path has more than {_LONGEST_SOCKET_PATH} bytes; ")
-        if length > 0:
+        if path:
             return address
     elif (found := _HOST_AND_PORT.fullmatch(address)) and 1 <= int(found[2]) <= 65535:
         return f"dns:///{address}"

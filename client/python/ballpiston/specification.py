@@ -69,8 +69,7 @@ def specification(
             at most one, or tolerance and budget together.
         estimate: the estimate that the tolerance refers to, such as "conductivity"; the server's
             error of a wrong name lists those that the experiment permits.
-        seed: of the random numbers; 0 to 2^64 - 1. The same question and seed give the same
-            numbers.
+        seed: of the random numbers; 0 to 2^64 - 1. Equal questions and seeds give equal numbers.
         model: "auto", "closed-form", "spectrum", "markov", "billiard" or "billiard-reference".
         precision: "double" or "single".
         verify: with "auto", also simulate what a closed form answers.
@@ -93,17 +92,15 @@ def specification(
             add_list(spec.grid, name, values)
     if points is not None:
         add_points(points, spec.grid)
-    targets = {"samples": samples, "collisions": collisions}
-    set_target(spec, **targets, tolerance=tolerance, budget=budget)
+    set_target(spec, samples=samples, collisions=collisions, tolerance=tolerance, budget=budget)
     if estimate is not None:
         if not isinstance(estimate, str):
             raise TypeError(f"estimate has to be a str, not {estimate!r}")
         spec.target.estimate = estimate
     spec.seed = whole_number("seed", seed, *UINT64)
-    if model is not None:
-        spec.model = from_spelling(spec, "model", model)
-    if precision is not None:
-        spec.precision = from_spelling(spec, "precision", precision)
+    for name, text in (("model", model), ("precision", precision)):
+        if text is not None:
+            setattr(spec, name, from_spelling(spec, name, text))
     return spec
 
 
