@@ -7,13 +7,13 @@ Writes the figure's tables, NAME.svg and NAME.png to DIR and prints the paths of
 """
 
 import importlib
-import importlib.util
 import inspect
 import json
+import runpy
 import sys
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from pathlib import Path
-from types import ModuleType
+from types import SimpleNamespace
 from typing import Any, NoReturn
 
 import ballpiston
@@ -56,16 +56,22 @@ def main(arguments: list[str]) -> int:
     return run_program(lambda words: _run(*_parsed(words)), arguments)
 
 
-def _parsed(arguments: list[str]) -> tuple[Namespace, ModuleType]:
+def _parsed(arguments: list[str]) -> tuple[Namespace, Any]:
     """The options and the figure's module. The options have the keywords of `measure` as they were
     written, or None."""
     name = arguments[0] if arguments else ""
     if name not in names():
         raise ValueError(f"{name!r} is not a figure ({', '.join(names())})")
-    common = _common_flags()
-    options, _ = common.parse_known_args(arguments)
+    parser = _common_flags(name)
+    words = (word for word in arguments if word not in ("-h", "--help"))  # when all are known
+    options, _ = parser.parse_known_args(list(words))
     module = _module(name, None if options.edit else options.out)
-    options, unknown = _flags_of(name, module, common).parse_known_args(arguments)
+    parser.description = module.__doc__
+    for keyword, parameter in _variables(module).items():
+        text = f"{_VARIABLES[keyword]}; " if keyword in _VARIABLES else ""
+        help_text = f"{text}by default {parameter.default}"
+        parser.add_argument(_flag(keyword), metavar="VALUE", help=help_text)
+    options, unknown = parser.parse_known_args(arguments)
     if unknown:
         hint = did_you_mean(unknown[0], [_flag(keyword) for keyword in _variables(module)])
         raise ValueError(f"{unknown[0]}: the figure {name} has no such variable{hint}")
@@ -74,40 +80,22 @@ def _parsed(arguments: list[str]) -> tuple[Namespace, ModuleType]:
     return options, module
 
 
-def _common_flags() -> _Parser:
+def _common_flags(name: str) -> _Parser:
     """The flags of every figure. The verb figure in client/command/verb_table.cc has them too."""
-    parser = _Parser(add_help=False, allow_abbrev=False)
+    form: Any = {"allow_abbrev": False, "formatter_class": RawDescriptionHelpFormatter}
+    parser = _Parser(prog="ballpiston figure", **form)
+    parser.add_argument("name", metavar=name, help="the figure")
     parser.add_argument("--out", type=Path, help="folder for data and pictures; required")
     parser.add_argument("--edit", action="store_true", help="copy the module to it; draw nothing")
     effort = parser.add_mutually_exclusive_group()
-    for level, text in [
-        ("quick", "few samples"),
-        ("full", "the paper's number of samples or more"),
-    ]:
-        effort.add_argument(
-            f"--{level}", dest="effort", action="store_const", const=level, help=text
-        )
+    levels = {"quick": "few samples", "full": "the paper's number of samples or more"}
+    for level, text in levels.items():
+        flag: dict[str, Any] = {"dest": "effort", "action": "store_const", "const": level}
+        effort.add_argument(f"--{level}", help=text, **flag)
     return parser
 
 
-def _flags_of(name: str, module: ModuleType, common: _Parser) -> _Parser:
-    """The common flags, and the keywords of the figure's `measure`."""
-    parser = _Parser(
-        prog="ballpiston figure",
-        allow_abbrev=False,
-        description=module.__doc__,
-        formatter_class=RawDescriptionHelpFormatter,
-        parents=[common],
-    )
-    parser.add_argument("name", metavar=name, help="the figure")
-    for keyword, parameter in _variables(module).items():
-        text = f"{_VARIABLES[keyword]}; " if keyword in _VARIABLES else ""
-        help_text = f"{text}by default {parameter.default}"
-        parser.add_argument(_flag(keyword), metavar="VALUE", help=help_text)
-    return parser
-
-
-def _variables(module: ModuleType) -> dict[str, inspect.Parameter]:
+def _variables(module: Any) -> dict[str, inspect.Parameter]:
     parameters = dict(inspect.signature(module.measure, eval_str=True).parameters)
     parameters.pop("client", None)
     return parameters
@@ -117,7 +105,7 @@ def _flag(keyword: str) -> str:
     return f"--{keyword.replace('_', '-')}"
 
 
-def _run(options: Namespace, module: ModuleType) -> list[Path]:
+def _run(options: Namespace, module: Any) -> list[Path]:
     try:
         options.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -140,7 +128,7 @@ def _installed(name: str) -> Path:
     return Path(__file__).with_name(f"{name.replace('-', '_')}.py")
 
 
-def _module(name: str, folder: Path | None) -> ModuleType:
+def _module(name: str, folder: Path | None) -> Any:
     """The one in the folder, if it is there."""
     installed = _installed(name)
     own = (folder or Path()) / installed.name
@@ -152,20 +140,14 @@ def _module(name: str, folder: Path | None) -> ModuleType:
             "installed file",
             file=sys.stderr,
         )
-    found = importlib.util.spec_from_file_location(f"own_{own.stem}", own)
-    assert found is not None and found.loader is not None
-    module = importlib.util.module_from_spec(found)
-    sys.modules[module.__name__] = module  # dataclasses look it up
-    found.loader.exec_module(module)
-    return module
+    return SimpleNamespace(**runpy.run_path(str(own)))
 
 
-def _keywords(module: ModuleType, options: Namespace) -> dict[str, Any]:
+def _keywords(module: Any, options: Namespace) -> dict[str, Any]:
     """Those of `measure` that differ from its defaults."""
     keywords: dict[str, Any] = dict(getattr(module, "EFFORT", {}).get(options.effort, {}))
     for keyword, parameter in _variables(module).items():
-        text = getattr(options, keyword, None)
-        if text is not None:
+        if (text := getattr(options, keyword)) is not None:
             keywords[keyword] = _value(_flag(keyword), text, parameter.annotation)
     return keywords
 
@@ -189,7 +171,7 @@ def _value(flag: str, text: str, kind: Any) -> Any:
 
 
 def _written(
-    options: Namespace, module: ModuleType, data: Tables, keywords: dict[str, Any]
+    options: Namespace, module: Any, data: Tables, keywords: dict[str, Any]
 ) -> list[Path]:
     """The pictures last: where they are, the data are too; and the data stay if `draw` fails."""
     comment = f"ballpiston {ballpiston.__version__}: figure {options.name} {json.dumps(keywords)}"
