@@ -18,7 +18,7 @@ from matplotlib.text import Text
 import ballpiston
 from ballpiston import figures
 from ballpiston.figures import __main__ as command
-from ballpiston.figures import gas, hitting_time, ingoing_law, kernel, lyapunov, markov_test
+from ballpiston.figures import gas, hitting_time, ingoing_law, kernel, markov_test
 from ballpiston.figures import rates, section, speed_accuracy, stability
 from ballpiston.figures.parts import oscillation, programs, style, tables
 from ballpiston.table import write_table
@@ -89,15 +89,6 @@ def test_relative_entropies_are_analysed_as_by_the_script() -> None:
     expect_equal(fits, of["fit"] | {"values": expected}, "fit")
 
 
-def test_the_error_of_an_excess_is_at_least_that_of_the_noise_floor() -> None:
-    divergence = {name: np.full(2, 0.5) for name in ("delta", "epsilon", "exponent")}
-    divergence |= {"value": np.array([3.0, 3.0]), "noise_floor": np.array([1.0, 2.0])}
-    divergence |= {"standard_error": np.array([0.1, 0.4]), "noise_error": np.array([0.3, 0.2])}
-    points = markov_test.excess(divergence)
-    assert points["excess"].tolist() == [2.0, 1.0]
-    assert points["standard_error"].tolist() == [0.3, 0.4]
-
-
 @pytest.mark.parametrize(
     "dip,error,count", [(0.7, 0.01, 2), (0.9, 0.01, 1), (0.7, 0.2, 1)], ids=["deep", "flat", "weak"]
 )
@@ -165,9 +156,11 @@ def test_few_gaps_have_no_error_and_no_gap_has_no_rate() -> None:
 def test_first_hits_at_the_ends_of_the_energy_are_drawn_with_errors(
     client: ballpiston.Client,
 ) -> None:
-    data = hitting_time.measure(client, delta="0.2,0.3", epsilon="0,0.5", samples=200)
+    data = hitting_time.measure(client, delta="0.2,0.3", epsilon="0,0.25,0.5", samples=200)
     inexact = tables.pick(data["hitting-time"], data["hitting-time"]["t"] > 0)
     assert (inexact["error"] > 0).all()
+    between = tables.rows(data["hitting-time"], epsilon=0.25)
+    assert between["limit"] == pytest.approx(np.exp(-between["t"]))
     expect_texts_inside(hitting_time.draw(data))
 
 
@@ -177,12 +170,6 @@ def test_a_chain_is_drawn_as_one_row(client: ballpiston.Client) -> None:
     assert (geometry["columns"][0], geometry["rows"][0]) == (4, 1)
     assert len(data["gas-pistons"]["x"]) == 4
     expect_texts_inside(gas.draw(data))
-
-
-def test_lyapunov_exponents_are_drawn_beside_what_is_computed(client: ballpiston.Client) -> None:
-    data = lyapunov.measure(client, delta="0.2,0.05", collisions=6400, samples=512)
-    assert data["lyapunov"]["samples"].tolist() == [6400, 6400]
-    expect_texts_inside(lyapunov.draw(data))
 
 
 # Chi-squared of collisions, and of the hits of an orbit, that are nearly independent; beyond 6
@@ -289,13 +276,6 @@ def test_tables_are_written_with_all_digits(tmp_path: Path) -> None:
     write_table(tmp_path / "table.csv", table, "made by a test")
     text = (tmp_path / "table.csv").read_text()
     assert text == '# made by a test\nx,name\n0.1,"a, b"\n,c\n'
-
-
-def test_curves_of_one_name_are_chosen_from_a_result(client: ballpiston.Client) -> None:
-    gas = {"rho": 0.53, "delta": 0.1, "cells": 2, "hot": 1.5, "cold": 0.5, "model": "markov"}
-    result = client.run("gas-conduction", **gas, samples=4000)
-    assert len(result[0].curves) > 1
-    assert set(tables.curves(result, "temperature_profile")["name"]) == {"temperature_profile"}
 
 
 def test_a_point_without_a_known_error_is_hollow() -> None:

@@ -1,7 +1,6 @@
 """The style of all pictures, and what most of them draw."""
 
 import functools
-import io
 import string
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import Any
 import matplotlib
 import matplotlib.style
 import numpy as np
-from matplotlib.axes import Axes
+from matplotlib.axes import Axes as Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize, to_hex
 from matplotlib.figure import Figure as Figure
@@ -18,7 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from ballpiston.figures.parts.tables import Table, Tables, distinct, rows
-from ballpiston.whole_file import write_atomically
+from ballpiston.whole_file import whole_file
 
 BLUE, ORANGE, GREEN, PINK = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
 BLACK, GREY, EDGE = "#202020", "#808080", "#8c8c8c"
@@ -50,11 +49,9 @@ def save(figure: Figure, path: Path) -> None:
     """As SVG or PNG, by the end of the path. The same picture gives the same file. A full disk
     leaves the old file."""
     ending = path.suffix.removeprefix(".")
-    buffer = io.BytesIO()
-    with matplotlib.style.context(_SHEET, after_reset=True):
+    with whole_file(path) as part, matplotlib.style.context(_SHEET, after_reset=True):
         metadata = {"Date": None} if ending == "svg" else {}
-        figure.savefig(buffer, format=ending, metadata=metadata)
-    write_atomically(path, buffer.getvalue())
+        figure.savefig(part, format=ending, metadata=metadata)
 
 
 def colour(index: int) -> str:
@@ -95,6 +92,12 @@ def bare_axes(figure: Figure, place: Any = 111) -> Any:
     axes.set_axis_off()
     axes.set_aspect("equal")
     return axes
+
+
+def arrows(axes: Any, bodies: Any, unit: float, **style: Any) -> None:
+    """The velocities of bodies at their places, where `unit` is that of an arrow of length 1."""
+    x, y, vx, vy = (bodies[name] for name in ("x", "y", "vx", "vy"))
+    axes.quiver(x, y, vx, vy, angles="xy", scale_units="xy", scale=unit, **style)
 
 
 def axis_arrows(axes: Any, origin: Sequence[float], length: float, names: Sequence[str]) -> None:
