@@ -71,7 +71,6 @@ def beside_exact(bins: Table) -> Table:
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """Six times for each start energy."""
     data = tables["master-equation"]
     series = distinct(zip(data["model"], data["delta"]))
     cases = list(itertools.product(distinct(data["epsilon"]), distinct(data["time"])))
@@ -83,7 +82,9 @@ def draw(tables: Tables) -> style.Figure:
         for upper, lower, (start, time) in zip(panels[2 * k], panels[2 * k + 1], block):
             law = rows(data, epsilon=start, time=time)
             _draw_law(upper, lower, law, series)
-            peak = 100 * _share_of_start(rows(law, model=series[0][0], delta=series[0][1]), start)
+            first = rows(law, model=series[0][0], delta=series[0][1])
+            there = np.searchsorted(first["lower"], start, "right") - 1  # the start's bin
+            peak = 100 * (first["exact"] * (first["upper"] - first["lower"]))[there]
             upper.set_title(
                 f"t = {time:g} τ$_{{bp}}$   (bin of ε = {start:g}: {peak:.3g} %)", fontsize=11
             )
@@ -111,9 +112,3 @@ def _draw_law(upper: Any, lower: Any, law: Table, series: list[Any]) -> None:
     exact: dict[str, Any] = {"color": style.BLACK, "linewidth": 1, "label": "master equation"}
     upper.stairs(part["exact"], edges, baseline=None, **exact)
     style.level(lower, 1)
-
-
-def _share_of_start(law: Table, start: float) -> float:
-    """The exact probability of the bin of the start energy."""
-    there = np.searchsorted(law["lower"], start, "right") - 1
-    return float((law["exact"] * (law["upper"] - law["lower"]))[there])
