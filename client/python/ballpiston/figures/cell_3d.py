@@ -38,9 +38,8 @@ def draw(tables: Tables) -> style.Figure:
         return low + stretch * np.maximum(x - low, 0)
 
     figure = style.picture(960, 800)
-    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    axes = figure.add_subplot(projection="3d", computed_zorder=False, elev=-28, azim=-62)
     axes.set_axis_off()
-    axes.view_init(elev=-28, azim=-62)
     axes.set(xlim=(-tip, tip), ylim=(-tip, tip), zlim=(low, ceiling))
     axes.set_box_aspect((1, 1, (ceiling - low) / (2 * tip)), zoom=1.15)
     for depth, disc in enumerate((3, 2, 0, 1)):  # from the back to the front

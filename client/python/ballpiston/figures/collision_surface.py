@@ -27,9 +27,8 @@ def measure(
 def draw(tables: Tables) -> style.Figure:
     epsilon = float(tables["collision-surface"]["epsilon"][0])
     figure = style.picture(960, 800)
-    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    axes = figure.add_subplot(projection="3d", computed_zorder=False, elev=22, azim=-50)
     axes.set_axis_off()
-    axes.view_init(elev=22, azim=-50)
     axes.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
     axes.set_box_aspect((1, 1, 1), zoom=1.35)
     turn = np.linspace(0, 2 * np.pi, 181)

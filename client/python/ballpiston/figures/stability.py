@@ -18,7 +18,7 @@ from matplotlib.patches import Rectangle
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.programs import output_of
-from ballpiston.figures.parts.tables import Table, Tables, distinct, groups, rows, table
+from ballpiston.figures.parts.tables import Table, Tables, distinct, groups, table
 from ballpiston.progress import has_terminal
 
 EFFORT = {"quick": {}, "full": {"all_starts": True}}
@@ -75,17 +75,16 @@ def counts(report: str) -> Table:
 @style.styled
 def draw(tables: Tables) -> style.Figure:
     data = tables["stability"]
-    sections, cases = distinct(data["section"]), distinct(data["row"])
-    lines = len(sections) + len(cases)
+    lines = len(distinct(data["section"])) + len(distinct(data["row"]))
     figure = style.picture(980, 200 + _LINE * lines)
     axes = figure.add_subplot()
     axes.set(xlim=(-0.5, len(_METHODS) - 0.5), ylim=(lines - 0.5, -0.5))
     axes.grid(False)
     line, ticks = 0, {}
-    for section in sections:
+    for (section,), block in groups(data, "section"):
         axes.text(-0.6, line, section, ha="right", va="center", fontsize=11, fontweight="bold")
         line += 1
-        for _, part in groups(rows(data, section=section), "row"):
+        for _, part in groups(block, "row"):
             ticks[line] = part["case"][0]
             _draw_cells(axes, part, line)
             line += 1

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure as Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from ballpiston.figures.parts.tables import Table, Tables, distinct, rows
+from ballpiston.figures.parts.tables import Table, Tables, groups
 from ballpiston.whole_file import whole_file
 
 BLUE, ORANGE, GREEN, PINK = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
@@ -64,10 +64,8 @@ Series = tuple[Table, str, str]  # the rows of one value, with the value's colou
 
 def series(whole: Table, name: str, symbol: str) -> list[Series]:
     """One for each value of the column `name`, in the order of their first appearance."""
-    return [
-        (rows(whole, **{name: x}), colour(k), f"{symbol} = {x:g}")
-        for k, x in enumerate(distinct(whole[name]))
-    ]
+    in_order = enumerate(groups(whole, name))
+    return [(part, colour(k), f"{symbol} = {x:g}") for k, ((x,), part) in in_order]
 
 
 def picture(width: float, height: float) -> Figure:
@@ -88,9 +86,8 @@ def panels(
 
 def bare_axes(figure: Figure, place: Any = 111) -> Any:
     """Axes without a frame, for drawings. Lengths of x and y are equal."""
-    axes = figure.add_subplot(place)
+    axes = figure.add_subplot(place, aspect="equal")
     axes.set_axis_off()
-    axes.set_aspect("equal")
     return axes
 
 
