@@ -43,11 +43,14 @@ def measure(
         for energy, rate, kernel in zip(energies, forms["f"][0], forms["kernel"][0])
     )
     question: dict[str, Any] = {"rho": rho, "delta": delta, "model": "billiard", "seed": seed}
-    hits = client.sample("equilibrium", collisions=collisions, **question).all()
+    names = ("piston_energy", "piston_energy_after")
+    sample = client.sample("equilibrium", collisions=collisions, **question)
+    parts = [[part[name].copy() for name in names] for part in sample]
+    hits = dict(zip(names, map(np.concatenate, zip(*parts))))
     return {"kernel-exact": exact, "kernel-measured": densities(energies, hits, bins)}
 
 
-def densities(energies: Iterable[float], collisions: Any, bins: int) -> Table:
+def densities(energies: Iterable[float], collisions: Table, bins: int) -> Table:
     """Of the energy after the collisions whose energy before is near each of the energies.
 
     The bins have equal widths in u = sqrt(2 epsilon) after the collision, because the density of u

@@ -23,9 +23,15 @@ from ballpiston.progress import has_terminal
 
 EFFORT = {"quick": {}, "full": {"all_starts": True}}
 
-_KINDS = set(
-    "escapes,negative times,loops,still inward,missed,phantoms,pistons beyond".split(",")
-)
+_KINDS = {
+    "escapes",
+    "negative times",
+    "loops",
+    "still inward",
+    "missed",
+    "phantoms",
+    "pistons beyond",
+}
 _NAIVE = 5  # the last columns are naive methods
 _METHODS = (
     "lanes",
