@@ -1,4 +1,11 @@
-"""The figures, one module each; client/python/README.md shows how to use one.
+"""The figures, one module each.
+
+    import ballpiston
+    from ballpiston.figures import relaxation
+
+    data = relaxation.measure(ballpiston.connect(), delta=[0.2, 0.1], samples=20_000)
+    data["relaxation-energy"]["value"]     # tables: named columns, NumPy arrays
+    relaxation.draw(data)                  # a matplotlib figure
 
 The module of a figure has the name in `ballpiston figure NAME` with underscores. It has:
 

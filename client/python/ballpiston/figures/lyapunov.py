@@ -3,6 +3,10 @@
 The pair has the Lyapunov exponents lambda_1 > lambda_2 > 0. The second one vanishes with the rate
 of ball-piston collisions, but lambda_2 tau does not tend to a constant. parts/tangent_growth.py
 computes it from the statistics of one collision, without a fit.
+
+a  lambda_2 in a collision over the mean free time tau, and its law for delta -> 0
+b  the same less log(tau), over the root of delta
+
 Time on one core: quick 12 s, default 70 s, full 11 min.
 """
 

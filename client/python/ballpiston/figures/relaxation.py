@@ -2,8 +2,13 @@
 
 Time is in units of the mean free time between ball-piston collisions. Points are means over orbits
 of the billiard, with one standard error. Lines are the limit delta -> 0, from the spectrum of the
-jump process. The mean energy tends to 1/6. Below are the differences from the limit, in c for the
-lowest and the highest start energy.
+jump process.
+
+a  mean energy of the piston from several start energies; it tends to 1/6
+b  autocorrelation of the piston's energy in equilibrium
+c  the difference of a from the limit, for the lowest and the highest start energy
+d  the difference of b from the limit
+
 Time on two cores: quick 2 s, default 25 s, full 4 min.
 """
 

@@ -3,9 +3,12 @@
 Work-precision diagrams of every method, which the program method_comparison measures. It needs no
 server. No other program should be busy on the machine.
 
-The mean free time of a and b is conditional. d has the wall hits until an orbit leaves the
-high-precision orbit. e compares the billiard and the limit delta -> 0 at the largest deltas (at
-most two) that resolve the bias of the limit.
+a, b  relative error of the conditional mean free time, against time and against wall hits
+c     error of the ingoing law of first hits, as a Kullback-Leibler divergence
+d     wall hits until an orbit leaves the high-precision orbit, against the time of a hit
+e     relative error of the energy's relaxation time, by the billiard and by the limit delta -> 0,
+      for the largest deltas (at most two) that resolve the bias of the limit
+f     relative error of the heat current of a gas of one cell between two reservoirs
 
 A line is the expected error, the root of sigma^2 + bias^2. sigma is the statistical error of a run.
 bias is the deviation of the method's longest run if it exceeds three statistical errors, else 0. An
