@@ -7,6 +7,8 @@ The parts above the plane contribute to the rate of collisions, the other parts 
 epsilon = 1/4 both circles contribute, above 1/4 one circle.
 """
 
+from typing import Any
+
 import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
@@ -59,7 +61,7 @@ def _in_plane_frame(n: FloatArray, t: FloatArray, v2: FloatArray) -> FloatArray:
     return np.stack([(t - n) / np.sqrt(2), v2, (t + n) / np.sqrt(2)], axis=-1)
 
 
-def _draw_circle(axes: style.Axes, epsilon: float, sigma: int) -> None:
+def _draw_circle(axes: Any, epsilon: float, sigma: int) -> None:
     """v3 = sigma sqrt(2 epsilon). The part above the tangent plane, v3 - v1 >= 0, is green."""
     alpha, height = np.linspace(0, 2 * np.pi, 721), sigma * np.sqrt(2 * epsilon)
     v1, v2 = np.sqrt(1 - 2 * epsilon) * np.array([np.cos(alpha), np.sin(alpha)])

@@ -15,7 +15,7 @@ import numpy as np
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer
-from ballpiston.figures.parts.tables import Tables, curves, distinct, rows
+from ballpiston.figures.parts.tables import Tables, closed_forms, curves, distinct, rows
 
 EFFORT = {
     "quick": {"delta": "0.325,0.2,0.1,0.05", "samples": 30_000},
@@ -40,11 +40,11 @@ def measure(
     question = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
     result = answer(client, "first-hit", samples=samples, seed=seed, **question)
     survival = curves(result, "survival")
-    (deltas, i), (energies, j) = (
-        np.unique(survival[name], return_inverse=True) for name in ("delta", "epsilon")
-    )
-    unit = client.analytic(rho, deltas, energies)["mean_free_time_conditional"]
-    survival["t"] = survival["time"] / unit[i, j]
+    forms = client.analytic(rho, delta, epsilon)
+    units = closed_forms(forms, "delta", "epsilon", "mean_free_time_conditional")
+    unit_of = {(d, e): unit for d, e, unit in zip(*units.values())}
+    pairs = zip(survival["delta"], survival["epsilon"])
+    survival["t"] = survival["time"] / np.array([unit_of[pair] for pair in pairs])
     # Where the server states no error, the error is binomial, with the larger of the measured and
     # the exponential probability, and half a count more, as in the server's errors.
     count = survival["samples"]

@@ -77,7 +77,7 @@ def draw(tables: Tables) -> style.Figure:
     shared: dict[str, Any] = style.SHARED | {"height_ratios": (2, 1) * len(blocks)}
     figure, panels = style.panels(size, 2 * len(blocks), _ACROSS, **shared)
     for k, block in enumerate(blocks):
-        for upper, lower, ((start, time), law) in zip(*panels[2 * k : 2 * k + 2], block):
+        for upper, lower, ((start, time), law) in zip(panels[2 * k], panels[2 * k + 1], block):
             _draw_law(upper, lower, law)
             (_, first), *_ = groups(law, "model", "delta")
             there = np.searchsorted(first["lower"], start, "right") - 1  # the start's bin

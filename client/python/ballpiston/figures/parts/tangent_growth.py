@@ -3,12 +3,14 @@
 docs/research/chaos.md derives the growth in a collision between the waits t and t':
 
   G = ln |[S(t') M S(t)]_12 / t| = ln t' + ln |M_21| + terms that vanish for t, t' -> infinity,
-  S(t) = (1 t; 0 1),   M = c (1 - P) + P/c,   P the projection on (1, v k) along (1, -v' k').
+  S(t) = (1 t; 0 1),   M = c (1 - P) + P/c,   P the projection on (1, v k) along (1, -v' k'),
+  |M_21| = vy^2 / |p p'| * k k' / (v k + v' k').
 
 Here c = p p'/(v v'), p is the piston's velocity, v the ball's speed, k the curvature of the ball's
 unstable front, and a prime means after the collision. Velocities and waits have the laws of the
-limit of rare collisions; positions are uniform on the collision surface at the actual delta. The
-curvatures follow from the ball's flights in its cell with a closed tip.
+limit of rare collisions: velocities on the unit sphere have a density proportional to (vx - p)+.
+Positions are uniform on the collision surface at the actual delta. The curvatures follow from the
+ball's flights in its cell with a closed tip.
 """
 
 import numpy as np
@@ -21,6 +23,7 @@ _MOST_HITS = 400  # of the ball until then: 16 in most cells, 100 for rho near 1
 _CHUNK = 16_384  # collisions that are followed together
 _SMALLEST_COSINE = 1e-12
 _GRID = 4096  # of depths
+_NODES = 200_000  # of integrals over the piston's speed
 
 
 def collision_rate(piston_speed: FloatArray) -> FloatArray:
@@ -33,13 +36,14 @@ def collision_rate(piston_speed: FloatArray) -> FloatArray:
     return rate
 
 
-_SPEEDS = (np.arange(200_000) + 0.5) / 200_000  # nodes of integrals
-_RATES = collision_rate(_SPEEDS)
-# <ln(t/tau)>: a collision is followed by the piston speed u with the density phi(u), and by an
-# exponential wait of the mean tau/phi(u).
-_MEAN_LOG_WAIT = -np.euler_gamma - float((_RATES * np.log(_RATES)).mean())
-# <ln(vy^2/|p p'|)>: |p| and |p'| have the density phi, and <ln vy^2> = -1 - 2 ln 2.
-MEAN_LOG_VELOCITIES = -1 - 2 * np.log(2) - 2 * float((_RATES * np.log(_SPEEDS)).mean())
+def mean_logarithms() -> tuple[float, float]:
+    """<ln(t/tau)>: a collision is followed by the piston speed u with the density phi(u), and by an
+    exponential wait of the mean tau/phi(u). <ln(vy^2/|p p'|)>: |p| and |p'| have the density phi,
+    and <ln vy^2> = -1 - 2 ln 2."""
+    speeds = (np.arange(_NODES) + 0.5) / _NODES
+    phi = collision_rate(speeds)
+    of_phi, of_speeds = float((phi * np.log(phi)).mean()), float((phi * np.log(speeds)).mean())
+    return -np.euler_gamma - of_phi, -1 - 2 * float(np.log(2)) - 2 * of_speeds
 
 
 def draw(
@@ -106,7 +110,8 @@ def second_exponent(
         for first in range(0, samples, _CHUNK)
     ]
     whole, curvature = np.concatenate(parts, axis=1)
-    known = np.log(tau) + _MEAN_LOG_WAIT + MEAN_LOG_VELOCITIES
+    wait, velocities = mean_logarithms()
+    known = np.log(tau) + wait + velocities
     return {
         "computed": known + whole.mean(),
         "computed_error": whole.std() / np.sqrt(samples),
