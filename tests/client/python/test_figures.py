@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -89,6 +90,15 @@ def test_relative_entropies_are_analysed_as_by_the_script() -> None:
     expect_equal(fits, of["fit"] | {"values": expected}, "fit")
 
 
+def test_the_error_of_an_excess_is_at_least_that_of_the_noise_floor() -> None:
+    divergence = {name: np.full(2, 0.5) for name in ("delta", "epsilon", "exponent")}
+    divergence |= {"value": np.array([3.0, 3.0]), "noise_floor": np.array([1.0, 2.0])}
+    divergence |= {"standard_error": np.array([0.1, 0.4]), "noise_error": np.array([0.3, 0.2])}
+    points = markov_test.excess(divergence)
+    assert points["excess"].tolist() == [2.0, 1.0]
+    assert points["standard_error"].tolist() == [0.3, 0.4]
+
+
 @pytest.mark.parametrize(
     "dip,error,count", [(0.7, 0.01, 2), (0.9, 0.01, 1), (0.7, 0.2, 1)], ids=["deep", "flat", "weak"]
 )
@@ -102,6 +112,13 @@ def test_a_dip_parts_two_maxima_if_it_is_deep_and_certain(
     assert len(markov_test.maxima(points)["delta"]) == count
     points["exponent"] = np.ones(5)  # the equilibrium law is left out, the columns stay
     assert [len(column) for column in markov_test.maxima(points).values()] == [0] * 5
+
+
+def test_the_maximum_of_three_equal_points_is_the_middle_one() -> None:
+    points = {name: np.full(5, 0.5) for name in ("epsilon", "exponent")}
+    points |= {"delta": np.geomspace(0.1, 0.3, 5), "excess": np.array([0.1, 5, 5, 5, 0.1])}
+    points["standard_error"] = np.array([0.01, 0.01, 0.01, 5, 0.01])
+    assert markov_test.maxima(points)["delta"] == pytest.approx(points["delta"][2:3], rel=1e-14)
 
 
 def test_an_oscillation_in_log_delta_is_found_with_its_period_and_amplitude() -> None:
@@ -151,6 +168,11 @@ def test_few_gaps_have_no_error_and_no_gap_has_no_rate() -> None:
         assert rate[0] == pytest.approx(1 if not known else 2 / 3)
         assert np.isfinite(error).all() == known
     assert np.isnan(rates.rate_of_windows([ends[:0]] * 2, ends)).all()
+
+
+def test_a_repeated_energy_has_one_line(client: ballpiston.Client) -> None:
+    data = rates.measure(client, epsilon="0.25,0.3,0.25", orbits=1, events=800)["rates"]
+    assert len(list(tables.groups(data, "kind", "lower"))) * 17 == len(data["t"]) == 4 * 17
 
 
 def test_first_hits_at_the_ends_of_the_energy_are_drawn_with_errors(
@@ -278,6 +300,14 @@ def test_tables_are_written_with_all_digits(tmp_path: Path) -> None:
     assert text == '# made by a test\nx,name\n0.1,"a, b"\n,c\n'
 
 
+@pytest.mark.filterwarnings("ignore:elementwise comparison:FutureWarning")  # of NumPy 1.24
+def test_rows_are_chosen_from_empty_and_numeric_columns_too() -> None:
+    whole = {"x": np.ones(2), "name": np.array(["a", "b"])}
+    assert tables.rows(whole)["x"].tolist() == [1, 1]
+    for part in (whole, tables.pick(whole, slice(0))):
+        assert len(tables.rows(part, x="text", name="a")["x"]) == 0
+
+
 def test_a_point_without_a_known_error_is_hollow() -> None:
     axes = style.picture(300, 200).subplots()
     style.error_points(axes, [1, 2, 3], [4, 5, 6], [0.1, np.nan, 0.2], style.BLUE)
@@ -296,6 +326,14 @@ def test_the_same_picture_gives_the_same_file(tmp_path: Path) -> None:
             style.save(module("cell_3d").draw(data), file)
     assert files[0].read_bytes() == files[1].read_bytes()
     assert b"heights drawn" in files[0].read_bytes()
+
+
+def test_a_picture_is_written_to_a_pipe(tmp_path: Path) -> None:
+    os.mkfifo(pipe := tmp_path / "a.png")
+    end = os.open(pipe, os.O_RDWR)
+    style.save(style.picture(30, 20), pipe)
+    assert os.read(end, 4) == b"\x89PNG"
+    os.close(end)
 
 
 @pytest.mark.parametrize(
@@ -351,6 +389,26 @@ def test_an_edited_module_is_used_and_kept_and_its_data_stay_if_the_picture_fail
     assert "cell.py, which differs" in error and "no picture" in error
     assert own.read_text() == edited
     assert list(tmp_path.glob("*.csv")) and not list(tmp_path.glob("*.svg"))
+
+
+EDITED = """from __future__ import annotations
+import dataclasses, pickle
+from ballpiston.figures import cell
+draw = cell.draw
+
+@dataclasses.dataclass
+class Own:
+    number: int
+
+def measure(client, *, _private: int = 1):
+    assert pickle.loads(pickle.dumps(Own(_private))) == Own(1)
+    return cell.measure(client)
+"""
+
+
+def test_an_edited_module_may_pickle_its_classes(home: Any, tmp_path: Path) -> None:
+    (tmp_path / "cell.py").write_text(EDITED)
+    assert command.main(["cell", "--out", str(tmp_path)]) == 0
 
 
 def test_help_lists_the_variables_of_a_figure(capsys: pytest.CaptureFixture[str]) -> None:

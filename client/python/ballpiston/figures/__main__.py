@@ -7,13 +7,12 @@ Writes the figure's tables, NAME.svg and NAME.png to DIR and prints the paths of
 """
 
 import importlib
+import importlib.util
 import inspect
 import json
-import runpy
 import sys
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any, NoReturn
 
 import ballpiston
@@ -63,8 +62,8 @@ def _parsed(arguments: list[str]) -> tuple[Namespace, Any]:
     if name not in names():
         raise ValueError(f"{name!r} is not a figure ({', '.join(names())})")
     parser = _common_flags(name)
-    words = (word for word in arguments if word not in ("-h", "--help"))  # when all are known
-    options, _ = parser.parse_known_args(list(words))
+    words = [word for word in arguments if word not in ("-h", "--help")]
+    options, _ = parser.parse_known_args(words)  # the second parse prints the help
     module = _module(name, None if options.edit else options.out)
     parser.description = module.__doc__
     for keyword, parameter in _variables(module).items():
@@ -82,16 +81,22 @@ def _parsed(arguments: list[str]) -> tuple[Namespace, Any]:
 
 def _common_flags(name: str) -> _Parser:
     """The flags of every figure. The verb figure in client/command/verb_table.cc has them too."""
-    form: Any = {"allow_abbrev": False, "formatter_class": RawDescriptionHelpFormatter}
-    parser = _Parser(prog="ballpiston figure", **form)
+    parser = _Parser(
+        prog="ballpiston figure",
+        allow_abbrev=False,
+        formatter_class=RawDescriptionHelpFormatter,
+    )
     parser.add_argument("name", metavar=name, help="the figure")
     parser.add_argument("--out", type=Path, help="folder for data and pictures; required")
     parser.add_argument("--edit", action="store_true", help="copy the module to it; draw nothing")
     effort = parser.add_mutually_exclusive_group()
-    levels = {"quick": "few samples", "full": "the paper's number of samples or more"}
-    for level, text in levels.items():
-        flag: dict[str, Any] = {"dest": "effort", "action": "store_const", "const": level}
-        effort.add_argument(f"--{level}", help=text, **flag)
+    for level, text in [
+        ("quick", "few samples"),
+        ("full", "the paper's number of samples or more"),
+    ]:
+        effort.add_argument(
+            f"--{level}", dest="effort", action="store_const", const=level, help=text
+        )
     return parser
 
 
@@ -140,14 +145,19 @@ def _module(name: str, folder: Path | None) -> Any:
             "installed file",
             file=sys.stderr,
         )
-    return SimpleNamespace(**runpy.run_path(str(own)))
+    found = importlib.util.spec_from_file_location(f"own_{own.stem}", own)
+    assert found is not None and found.loader is not None
+    module = importlib.util.module_from_spec(found)
+    sys.modules[module.__name__] = module  # dataclasses look it up
+    found.loader.exec_module(module)
+    return module
 
 
 def _keywords(module: Any, options: Namespace) -> dict[str, Any]:
     """Those of `measure` that differ from its defaults."""
     keywords: dict[str, Any] = dict(getattr(module, "EFFORT", {}).get(options.effort, {}))
     for keyword, parameter in _variables(module).items():
-        if (text := getattr(options, keyword)) is not None:
+        if (text := getattr(options, keyword, None)) is not None:
             keywords[keyword] = _value(_flag(keyword), text, parameter.annotation)
     return keywords
 

@@ -123,11 +123,13 @@ def _highest_points(y: Any, error: Any) -> Iterator[int]:
 
 def _top(x: Any, y: Any, i: int) -> float:
     """x at the maximum of the parabola of log y through the point i and its neighbours."""
-    near = slice(i - 1, i + 2)
-    if min(y[near]) <= 0:
+    if min(y[i - 1 : i + 2]) <= 0:
         return float(x[i])
-    bend, slope, _ = np.polyfit(x[near] - x[i], np.log(y[near]), 2)
-    return float(x[i] - (slope / (2 * bend) if bend != 0 else 0))
+    after, before = (np.diff(np.log(y[i - 1 : i + 2])) / np.diff(x[i - 1 : i + 2]))[::-1]
+    if after == before:
+        return float(x[i])
+    half = (x[i + 1] - x[i - 1]) / 2
+    return float((x[i] + x[i - 1]) / 2 - before * half / (after - before))
 
 
 @style.styled

@@ -2,8 +2,11 @@
 
 The probability P(t) of at least one event in a window of length t, divided by t and by the exact
 rate, with one standard error, against t in units of the mean free time. As t tends to 0 the ratio
-tends to 1. The dashed line is a Poisson process with the same rate. Panel a has all events:
-ball-piston, ball-wall and piston-wall.
+tends to 1. The dashed line is a Poisson process with the same rate.
+
+a  all events: ball-piston, ball-wall and piston-wall
+b  ball-piston events
+c  ball-piston events given the piston's energy
 
 All values of a line come from the same orbits. Therefore neighbouring points have nearly the same
 statistical error. Time on two cores: quick 3 s, default 25 s, full 4 min.
@@ -15,7 +18,8 @@ import numpy as np
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, Client, Numbers
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, measured, rows, stacked
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct
+from ballpiston.figures.parts.tables import measured, rows, stacked
 
 EFFORT = {"quick": {"events": 40_000}, "full": {"orbits": 20, "events": 1_000_000}}
 
@@ -73,7 +77,8 @@ def _kinds(client: Client, rho: float, delta: float, epsilon: Numbers) -> list[d
     times = client.analytic(rho, delta, u.ravel() ** 2 / 2)["mean_free_time_conditional"][0]
     rate = (1 / times.reshape(u.shape)).mean(axis=0)
     kinds += [("conditional", *numbers) for numbers in zip(middle, lower, upper, rate)]
-    return [dict(zip(("kind", "epsilon", "lower", "upper", "exact"), kind)) for kind in kinds]
+    names = ("kind", "epsilon", "lower", "upper", "exact")
+    return [dict(zip(names, kind)) for kind in distinct(kinds)]  # an energy may be repeated
 
 
 def batches_of_gaps(orbit: Table, kind: dict[str, Any]) -> list[FloatArray]:

@@ -1,6 +1,7 @@
 """The style of all pictures, and what most of them draw."""
 
 import functools
+import io
 import string
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -17,7 +18,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from ballpiston.figures.parts.tables import Table, Tables, groups
-from ballpiston.whole_file import whole_file
+from ballpiston.whole_file import write_atomically
 
 BLUE, ORANGE, GREEN, PINK = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
 BLACK, GREY, EDGE = "#202020", "#808080", "#8c8c8c"
@@ -49,9 +50,11 @@ def save(figure: Figure, path: Path) -> None:
     """As SVG or PNG, by the end of the path. The same picture gives the same file. A full disk
     leaves the old file."""
     ending = path.suffix.removeprefix(".")
-    with whole_file(path) as part, matplotlib.style.context(_SHEET, after_reset=True):
+    buffer = io.BytesIO()  # a pipe cannot seek, as PNG needs
+    with matplotlib.style.context(_SHEET, after_reset=True):
         metadata = {"Date": None} if ending == "svg" else {}
-        figure.savefig(part, format=ending, metadata=metadata)
+        figure.savefig(buffer, format=ending, metadata=metadata)
+    write_atomically(path, buffer.getvalue())
 
 
 def colour(index: int) -> str:

@@ -38,8 +38,10 @@ def pick(whole: Table, index: Any) -> dict[str, Any]:
 
 def rows(whole: Table, **wanted: Any) -> Table:
     """The rows in which each named column has the wanted value."""
-    has_values = [whole[name] == value for name, value in wanted.items()]
-    return pick(whole, np.logical_and.reduce(has_values))
+    mask = np.ones(len(next(iter(whole.values()), ())), dtype=bool)
+    for name, value in wanted.items():
+        mask &= whole[name] == value
+    return pick(whole, mask)
 
 
 def measured(
