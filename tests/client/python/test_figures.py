@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from matplotlib.text import Text
 import ballpiston
 from ballpiston import figures
 from ballpiston.figures import __main__ as command
-from ballpiston.figures import gas, hitting_time, ingoing_law, kernel, lyapunov, markov_test
+from ballpiston.figures import gas, hitting_time, ingoing_law, kernel, markov_test
 from ballpiston.figures import rates, section, speed_accuracy, stability
 from ballpiston.figures.parts import oscillation, programs, style, tables
 from ballpiston.table import write_table
@@ -113,6 +114,13 @@ def test_a_dip_parts_two_maxima_if_it_is_deep_and_certain(
     assert [len(column) for column in markov_test.maxima(points).values()] == [0] * 5
 
 
+def test_the_maximum_of_three_equal_points_is_the_middle_one() -> None:
+    points = {name: np.full(5, 0.5) for name in ("epsilon", "exponent")}
+    points |= {"delta": np.geomspace(0.1, 0.3, 5), "excess": np.array([0.1, 5, 5, 5, 0.1])}
+    points["standard_error"] = np.array([0.01, 0.01, 0.01, 5, 0.01])
+    assert markov_test.maxima(points)["delta"] == pytest.approx(points["delta"][2:3], rel=1e-14)
+
+
 def test_an_oscillation_in_log_delta_is_found_with_its_period_and_amplitude() -> None:
     delta = np.geomspace(0.02, 0.3, 60)
     error = 0.01
@@ -162,12 +170,19 @@ def test_few_gaps_have_no_error_and_no_gap_has_no_rate() -> None:
     assert np.isnan(rates.rate_of_windows([ends[:0]] * 2, ends)).all()
 
 
+def test_a_repeated_energy_has_one_line(client: ballpiston.Client) -> None:
+    data = rates.measure(client, epsilon="0.25,0.3,0.25", orbits=1, events=800)["rates"]
+    assert len(list(tables.groups(data, "kind", "lower"))) * 17 == len(data["t"]) == 4 * 17
+
+
 def test_first_hits_at_the_ends_of_the_energy_are_drawn_with_errors(
     client: ballpiston.Client,
 ) -> None:
-    data = hitting_time.measure(client, delta="0.2,0.3", epsilon="0,0.5", samples=200)
+    data = hitting_time.measure(client, delta="0.2,0.3", epsilon="0,0.25,0.5", samples=200)
     inexact = tables.pick(data["hitting-time"], data["hitting-time"]["t"] > 0)
     assert (inexact["error"] > 0).all()
+    between = tables.rows(data["hitting-time"], epsilon=0.25)
+    assert between["limit"] == pytest.approx(np.exp(-between["t"]))
     expect_texts_inside(hitting_time.draw(data))
 
 
@@ -177,12 +192,6 @@ def test_a_chain_is_drawn_as_one_row(client: ballpiston.Client) -> None:
     assert (geometry["columns"][0], geometry["rows"][0]) == (4, 1)
     assert len(data["gas-pistons"]["x"]) == 4
     expect_texts_inside(gas.draw(data))
-
-
-def test_lyapunov_exponents_are_drawn_beside_what_is_computed(client: ballpiston.Client) -> None:
-    data = lyapunov.measure(client, delta="0.2,0.05", collisions=6400, samples=512)
-    assert data["lyapunov"]["samples"].tolist() == [6400, 6400]
-    expect_texts_inside(lyapunov.draw(data))
 
 
 # Chi-squared of collisions, and of the hits of an orbit, that are nearly independent; beyond 6
@@ -291,11 +300,12 @@ def test_tables_are_written_with_all_digits(tmp_path: Path) -> None:
     assert text == '# made by a test\nx,name\n0.1,"a, b"\n,c\n'
 
 
-def test_curves_of_one_name_are_chosen_from_a_result(client: ballpiston.Client) -> None:
-    gas = {"rho": 0.53, "delta": 0.1, "cells": 2, "hot": 1.5, "cold": 0.5, "model": "markov"}
-    result = client.run("gas-conduction", **gas, samples=4000)
-    assert len(result[0].curves) > 1
-    assert set(tables.curves(result, "temperature_profile")["name"]) == {"temperature_profile"}
+@pytest.mark.filterwarnings("ignore:elementwise comparison:FutureWarning")  # of NumPy 1.24
+def test_rows_are_chosen_from_empty_and_numeric_columns_too() -> None:
+    whole = {"x": np.ones(2), "name": np.array(["a", "b"])}
+    assert tables.rows(whole)["x"].tolist() == [1, 1]
+    for part in (whole, tables.pick(whole, slice(0))):
+        assert len(tables.rows(part, x="text", name="a")["x"]) == 0
 
 
 def test_a_point_without_a_known_error_is_hollow() -> None:
@@ -316,6 +326,14 @@ def test_the_same_picture_gives_the_same_file(tmp_path: Path) -> None:
             style.save(module("cell_3d").draw(data), file)
     assert files[0].read_bytes() == files[1].read_bytes()
     assert b"heights drawn" in files[0].read_bytes()
+
+
+def test_a_picture_is_written_to_a_pipe(tmp_path: Path) -> None:
+    os.mkfifo(pipe := tmp_path / "a.png")
+    end = os.open(pipe, os.O_RDWR)
+    style.save(style.picture(30, 20), pipe)
+    assert os.read(end, 4) == b"\x89PNG"
+    os.close(end)
 
 
 @pytest.mark.parametrize(
@@ -371,6 +389,26 @@ def test_an_edited_module_is_used_and_kept_and_its_data_stay_if_the_picture_fail
     assert "cell.py, which differs" in error and "no picture" in error
     assert own.read_text() == edited
     assert list(tmp_path.glob("*.csv")) and not list(tmp_path.glob("*.svg"))
+
+
+EDITED = """from __future__ import annotations
+import dataclasses, pickle
+from ballpiston.figures import cell
+draw = cell.draw
+
+@dataclasses.dataclass
+class Own:
+    number: int
+
+def measure(client, *, _private: int = 1):
+    assert pickle.loads(pickle.dumps(Own(_private))) == Own(1)
+    return cell.measure(client)
+"""
+
+
+def test_an_edited_module_may_pickle_its_classes(home: Any, tmp_path: Path) -> None:
+    (tmp_path / "cell.py").write_text(EDITED)
+    assert command.main(["cell", "--out", str(tmp_path)]) == 0
 
 
 def test_help_lists_the_variables_of_a_figure(capsys: pytest.CaptureFixture[str]) -> None:

@@ -13,7 +13,6 @@ import json
 import sys
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from pathlib import Path
-from types import ModuleType
 from typing import Any, NoReturn
 
 import ballpiston
@@ -56,16 +55,22 @@ def main(arguments: list[str]) -> int:
     return run_program(lambda words: _run(*_parsed(words)), arguments)
 
 
-def _parsed(arguments: list[str]) -> tuple[Namespace, ModuleType]:
+def _parsed(arguments: list[str]) -> tuple[Namespace, Any]:
     """The options and the figure's module. The options have the keywords of `measure` as they were
     written, or None."""
     name = arguments[0] if arguments else ""
     if name not in names():
         raise ValueError(f"{name!r} is not a figure ({', '.join(names())})")
-    common = _common_flags()
-    options, _ = common.parse_known_args(arguments)
+    parser = _common_flags(name)
+    words = [word for word in arguments if word not in ("-h", "--help")]
+    options, _ = parser.parse_known_args(words)  # the second parse prints the help
     module = _module(name, None if options.edit else options.out)
-    options, unknown = _flags_of(name, module, common).parse_known_args(arguments)
+    parser.description = module.__doc__
+    for keyword, parameter in _variables(module).items():
+        text = f"{_VARIABLES[keyword]}; " if keyword in _VARIABLES else ""
+        help_text = f"{text}by default {parameter.default}"
+        parser.add_argument(_flag(keyword), metavar="VALUE", help=help_text)
+    options, unknown = parser.parse_known_args(arguments)
     if unknown:
         hint = did_you_mean(unknown[0], [_flag(keyword) for keyword in _variables(module)])
         raise ValueError(f"{unknown[0]}: the figure {name} has no such variable{hint}")
@@ -74,9 +79,14 @@ def _parsed(arguments: list[str]) -> tuple[Namespace, ModuleType]:
     return options, module
 
 
-def _common_flags() -> _Parser:
+def _common_flags(name: str) -> _Parser:
     """The flags of every figure. The verb figure in client/command/verb_table.cc has them too."""
-    parser = _Parser(add_help=False, allow_abbrev=False)
+    parser = _Parser(
+        prog="ballpiston figure",
+        allow_abbrev=False,
+        formatter_class=RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("name", metavar=name, help="the figure")
     parser.add_argument("--out", type=Path, help="folder for data and pictures; required")
     parser.add_argument("--edit", action="store_true", help="copy the module to it; draw nothing")
     effort = parser.add_mutually_exclusive_group()
@@ -90,24 +100,7 @@ def _common_flags() -> _Parser:
     return parser
 
 
-def _flags_of(name: str, module: ModuleType, common: _Parser) -> _Parser:
-    """The common flags, and the keywords of the figure's `measure`."""
-    parser = _Parser(
-        prog="ballpiston figure",
-        allow_abbrev=False,
-        description=module.__doc__,
-        formatter_class=RawDescriptionHelpFormatter,
-        parents=[common],
-    )
-    parser.add_argument("name", metavar=name, help="the figure")
-    for keyword, parameter in _variables(module).items():
-        text = f"{_VARIABLES[keyword]}; " if keyword in _VARIABLES else ""
-        help_text = f"{text}by default {parameter.default}"
-        parser.add_argument(_flag(keyword), metavar="VALUE", help=help_text)
-    return parser
-
-
-def _variables(module: ModuleType) -> dict[str, inspect.Parameter]:
+def _variables(module: Any) -> dict[str, inspect.Parameter]:
     parameters = dict(inspect.signature(module.measure, eval_str=True).parameters)
     parameters.pop("client", None)
     return parameters
@@ -117,7 +110,7 @@ def _flag(keyword: str) -> str:
     return f"--{keyword.replace('_', '-')}"
 
 
-def _run(options: Namespace, module: ModuleType) -> list[Path]:
+def _run(options: Namespace, module: Any) -> list[Path]:
     try:
         options.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -140,7 +133,7 @@ def _installed(name: str) -> Path:
     return Path(__file__).with_name(f"{name.replace('-', '_')}.py")
 
 
-def _module(name: str, folder: Path | None) -> ModuleType:
+def _module(name: str, folder: Path | None) -> Any:
     """The one in the folder, if it is there."""
     installed = _installed(name)
     own = (folder or Path()) / installed.name
@@ -160,12 +153,11 @@ def _module(name: str, folder: Path | None) -> ModuleType:
     return module
 
 
-def _keywords(module: ModuleType, options: Namespace) -> dict[str, Any]:
+def _keywords(module: Any, options: Namespace) -> dict[str, Any]:
     """Those of `measure` that differ from its defaults."""
     keywords: dict[str, Any] = dict(getattr(module, "EFFORT", {}).get(options.effort, {}))
     for keyword, parameter in _variables(module).items():
-        text = getattr(options, keyword, None)
-        if text is not None:
+        if (text := getattr(options, keyword, None)) is not None:
             keywords[keyword] = _value(_flag(keyword), text, parameter.annotation)
     return keywords
 
@@ -189,7 +181,7 @@ def _value(flag: str, text: str, kind: Any) -> Any:
 
 
 def _written(
-    options: Namespace, module: ModuleType, data: Tables, keywords: dict[str, Any]
+    options: Namespace, module: Any, data: Tables, keywords: dict[str, Any]
 ) -> list[Path]:
     """The pictures last: where they are, the data are too; and the data stay if `draw` fails."""
     comment = f"ballpiston {ballpiston.__version__}: figure {options.name} {json.dumps(keywords)}"

@@ -30,14 +30,18 @@ def measure(client: Client, *, rho: float = RHO, delta: float = 0.15, seed: int 
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """The pair with its dimension lines."""
     at = pick(tables["cell"], 0)
     figure = style.picture(960, 670)
     axes = style.bare_axes(figure)
     axes.set(xlim=(-0.64, 1.22), ylim=(-0.66, 0.64))
     _draw_walls(axes, at)
     _draw_parameters(axes, at)
-    _draw_bodies(axes, at)
+    x, eta = at["piston_x"], at["eta"]
+    axes.plot([x, x], [-eta / 2, eta / 2], color=style.BLUE, linewidth=5, solid_capstyle="butt")
+    axes.plot(at["ball_x"], at["ball_y"], "o", color=style.ORANGE, markersize=9)
+    for body, colour in (("piston", style.BLUE), ("ball", style.ORANGE)):
+        moving = {name: at[f"{body}_{name}"] for name in ("x", "y", "vx", "vy")}
+        style.arrows(axes, moving, 1 / _ARROW, color=colour, width=0.004, zorder=5)
     text = "ρ = {rho:.6g}     λ = tan θ = {lambda:.4g}     δ = {delta:.4g}     η = {eta:.4g}"
     axes.text(-0.5, 0.575, text.format(**at))
     return figure
@@ -52,17 +56,11 @@ def _draw_walls(axes: Any, at: dict[str, Any]) -> None:
     axes.add_patch(Polygon(overlap, facecolor=style.OVERLAP))
     outline = cell_outline.outline(at["rho"])
     axes.add_patch(Polygon(outline, facecolor="white"))
-    corner = (_first(at), -at["eta"] / 2)
-    length = at["lambda"] + 2 * at["delta"]
-    axes.add_patch(Rectangle(corner, length, at["eta"], facecolor=style.REACH, **edge))
+    half, eta = at["lambda"] / 2 + at["delta"], at["eta"]
+    axes.add_patch(Rectangle((0.5 - half, -eta / 2), 2 * half, eta, facecolor=style.REACH, **edge))
     axes.add_patch(Polygon(overlap, fill=False, linestyle=(0, (4, 3)), **edge))
     axes.add_patch(Rectangle((-0.5, -0.5), 1, 1, fill=False, linestyle=(0, (8, 5)), **edge))
     axes.add_patch(Polygon(outline, fill=False, edgecolor=style.BLACK, linewidth=2))
-
-
-def _first(at: dict[str, Any]) -> float:
-    """The piston's leftmost position."""
-    return float(0.5 - at["lambda"] / 2 - at["delta"])
 
 
 def _draw_parameters(axes: Any, at: dict[str, Any]) -> None:
@@ -90,7 +88,7 @@ def _draw_parameters(axes: Any, at: dict[str, Any]) -> None:
         _extension(axes, (inner, 0), (inner, above + 0.02))
         _extension(axes, (outer, eta / 2), (outer, above + 0.02))
 
-    right = 1 - _first(at)
+    right = 0.5 + at["lambda"] / 2 + at["delta"]
     beside = right + _AWAY
     _dimension(axes, (beside, -eta / 2), (beside, eta / 2), "η", (0.03, 0))
     for y in (-eta / 2, eta / 2):
@@ -110,13 +108,3 @@ def _dimension(axes: Any, start: Any, end: Any, label: str, offset: Any) -> None
 
 def _extension(axes: Any, start: Any, end: Any) -> None:
     axes.plot(*zip(start, end), color=style.EDGE, linewidth=0.9, dashes=(5, 4))
-
-
-def _draw_bodies(axes: Any, at: dict[str, Any]) -> None:
-    arrow = {"angles": "xy", "scale_units": "xy", "scale": 1 / _ARROW, "width": 0.004, "zorder": 5}
-    x, eta = at["piston_x"], at["eta"]
-    axes.plot([x, x], [-eta / 2, eta / 2], color=style.BLUE, linewidth=5, solid_capstyle="butt")
-    axes.quiver(x, 0, at["piston_vx"], 0, color=style.BLUE, **arrow)
-    x, y, vx, vy = (at[f"ball_{name}"] for name in ("x", "y", "vx", "vy"))
-    axes.plot(x, y, "o", color=style.ORANGE, markersize=9)
-    axes.quiver(x, y, vx, vy, color=style.ORANGE, **arrow)

@@ -21,14 +21,12 @@ _HIGHEST, _LOWEST = 1.1, 0.6  # heights of the drawing, in units of its width
 
 
 def measure(client: Client, *, rho: float = RHO, delta: float = 0.15) -> Tables:
-    """One row: the geometry."""
     forms = client.analytic(rho, delta)
     return {"cell-3d": closed_forms(forms, "rho", "delta", "lambda", "eta")}
 
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """The walls, the floor and the collision surface, with labels beside them."""
     at = pick(tables["cell-3d"], 0)
     tip = float(0.5 - at["lambda"] / 2)
     low = float(tip - at["delta"])
@@ -40,14 +38,17 @@ def draw(tables: Tables) -> style.Figure:
         return low + stretch * np.maximum(x - low, 0)
 
     figure = style.picture(960, 800)
-    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    axes = figure.add_subplot(projection="3d", computed_zorder=False, elev=-28, azim=-62)
     axes.set_axis_off()
-    axes.view_init(elev=-28, azim=-62)
     axes.set(xlim=(-tip, tip), ylim=(-tip, tip), zlim=(low, ceiling))
     axes.set_box_aspect((1, 1, (ceiling - low) / (2 * tip)), zoom=1.15)
     for depth, disc in enumerate((3, 2, 0, 1)):  # from the back to the front
         x, y = cell_outline.outline(at["rho"], disc + np.linspace(0, 1, 49)).T
-        _draw_wall(axes, x, y, bottom(x), ceiling, depth)
+        wall = np.array([x, x]), np.array([y, y]), np.array([bottom(x), np.full_like(x, ceiling)])
+        light: dict[str, Any] = {"lightsource": LightSource(130, 0), "ccount": len(x)}
+        axes.plot_surface(*wall, color=_WALL, antialiased=False, zorder=depth, **light)
+        edges = (np.concatenate([a, b[::-1], a[:1]]) for a, b in wall)
+        axes.plot(*edges, color=_EDGE, linewidth=1.2, zorder=depth)
     _draw_strip(axes, at["rho"], np.linspace(-tip, low, 60), bottom, _FLOOR)
     _draw_strip(axes, at["rho"], np.linspace(low, tip, 60), bottom, style.ORANGE)
     style.axis_arrows(axes, (0.9 * tip, 0.3 * tip, low), 0.35 * tip, ("q₁", "q₂", "q₃"))
@@ -63,22 +64,10 @@ def draw(tables: Tables) -> style.Figure:
     return figure
 
 
-def _draw_wall(
-    axes: Any, x: FloatArray, y: FloatArray, z: FloatArray, ceiling: float, depth: int
-) -> None:
-    """On one arc, from z to the ceiling, with light from the front, and its edges."""
-    wall = np.array([x, x]), np.array([y, y]), np.array([z, np.full_like(x, ceiling)])
-    shaded: dict[str, Any] = {"color": _WALL, "lightsource": LightSource(130, 0), "ccount": len(x)}
-    axes.plot_surface(*wall, antialiased=False, zorder=depth, **shaded)
-    edge = {"color": _EDGE, "linewidth": 1.2, "zorder": depth}
-    axes.plot(*(np.concatenate([a, b[::-1], a[:1]]) for a, b in wall), **edge)
-
-
 def _draw_strip(axes: Any, rho: float, x: FloatArray, bottom: Any, colour: str) -> None:
     """Of the floor or the collision surface, between the lower and the upper arcs."""
     tip = 0.5 - cell_outline.overlap_length(rho) / 2
-    half, z = cell_outline.half_height(rho, tip - np.abs(x)), bottom(x)
-    there = np.column_stack([x, half, z])
-    back = np.column_stack([x, -half, z])[::-1]
-    face = [np.concatenate([there, back])]
+    half = cell_outline.half_height(rho, tip - np.abs(x))
+    there, back = (np.column_stack([x, y, bottom(x)]) for y in (half, -half))
+    face = [np.concatenate([there, back[::-1]])]
     axes.add_collection3d(Poly3DCollection(face, facecolor=colour, edgecolor=_EDGE, zorder=9))

@@ -25,26 +25,14 @@ def measure(
     return {"collision-surface": closed_forms(forms, "rho", "delta", "epsilon")}
 
 
-def circle_at(epsilon: float, sigma: int, count: int = 721) -> tuple[FloatArray, FloatArray]:
-    """Points (count, 3) of the circle v3 = sigma sqrt(2 epsilon), and which of them are above the
-    tangent plane: v3 - v1 >= 0."""
-    alpha = np.linspace(0, 2 * np.pi, count)
-    rim, height = np.sqrt(1 - 2 * epsilon), sigma * np.sqrt(2 * epsilon)
-    points = np.column_stack([rim * np.cos(alpha), rim * np.sin(alpha), np.full(count, height)])
-    return points, points[:, 2] - points[:, 0] >= 0
-
-
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """The hemisphere with its meridians and parallels, the plane and the circles."""
     epsilon = float(tables["collision-surface"]["epsilon"][0])
     figure = style.picture(960, 800)
-    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    axes = figure.add_subplot(projection="3d", computed_zorder=False, elev=22, azim=-50)
     axes.set_axis_off()
-    axes.view_init(elev=22, azim=-50)
     axes.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
     axes.set_box_aspect((1, 1, 1), zoom=1.35)
-
     turn = np.linspace(0, 2 * np.pi, 181)
     rim = _in_plane_frame(np.zeros_like(turn), np.cos(turn), np.sin(turn))
     axes.add_collection3d(Poly3DCollection([rim], facecolor="#c9d3ea", alpha=0.8))
@@ -54,7 +42,9 @@ def draw(tables: Tables) -> style.Figure:
     axes.plot_wireframe(*net, rstride=15, cstride=15, color="#b4b4b4", linewidth=0.8)
     for sigma in (-1, 1):
         _draw_circle(axes, epsilon, sigma)
-    _draw_normal(axes)
+    normal = 1.22 * np.array([-1, 0, 1]) / np.sqrt(2)
+    axes.quiver(0, 0, 0, *normal, color=style.BLUE, linewidth=2.5, arrow_length_ratio=0.1)
+    axes.text(*(1.08 * normal), "n", color=style.BLUE)
     style.axis_arrows(axes, (-1.0, -0.9, -1.1), 0.42, ("v₁", "v₂", "v₃"))
     for height, text, colour in (
         (0.96, "above the plane", style.GREEN),
@@ -72,16 +62,14 @@ def _in_plane_frame(n: FloatArray, t: FloatArray, v2: FloatArray) -> FloatArray:
 
 
 def _draw_circle(axes: Any, epsilon: float, sigma: int) -> None:
-    points, is_above = circle_at(epsilon, sigma)
+    """v3 = sigma sqrt(2 epsilon). The part above the tangent plane, v3 - v1 >= 0, is green."""
+    alpha, height = np.linspace(0, 2 * np.pi, 721), sigma * np.sqrt(2 * epsilon)
+    v1, v2 = np.sqrt(1 - 2 * epsilon) * np.array([np.cos(alpha), np.sin(alpha)])
+    points = np.column_stack([v1, v2, np.full_like(alpha, height)])
+    is_above = height - v1 >= 0
     for included, colour in ((False, "#c8c8c8"), (True, style.GREEN)):
         part = np.where((is_above == included)[:, np.newaxis], points, np.nan)
         axes.plot(*part.T, color=colour, linewidth=4)
     end = np.sqrt(0.5 - epsilon)
     sign = "" if sigma > 0 else "-"
-    axes.text(1.15 * end, 1.15 * end, points[0, 2], f"  v₃ = {sign}√(2ε)", va="center")
-
-
-def _draw_normal(axes: Any) -> None:
-    normal = 1.22 * np.array([-1, 0, 1]) / np.sqrt(2)
-    axes.quiver(0, 0, 0, *normal, color=style.BLUE, linewidth=2.5, arrow_length_ratio=0.1)
-    axes.text(*(1.08 * normal), "n", color=style.BLUE)
+    axes.text(1.15 * end, 1.15 * end, height, f"  v₃ = {sign}√(2ε)", va="center")

@@ -10,7 +10,7 @@ Time on two cores: quick 3 s, default 50 s, full 5 min.
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, Client, Numbers, Shapes
 from ballpiston.figures.parts.asking import answer, check_chains, number_list
-from ballpiston.figures.parts.tables import Table, Tables, estimates, rows
+from ballpiston.figures.parts.tables import Table, Tables, estimates, measured, rows
 
 EFFORT = {
     "quick": {"billiard_samples": 3000, "samples": 1000},
@@ -31,7 +31,6 @@ def measure(
 ) -> Tables:
     """Estimates of the billiard at each delta, in a ring of `billiard_cells`, and of the jump
     process, the limit delta -> 0, in each ring of `cells`. Samples are replicas of a ring."""
-
     check_chains(cells)
 
     def gas(model: str, delta: Numbers, cells: Shapes, samples: float) -> Table:
@@ -48,22 +47,17 @@ def measure(
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """Both panels."""
     billiard = rows(tables["conductivity-billiard"], name="conductivity_ratio")
     rings = rows(tables["conductivity-rings"], name="conductivity_ratio")
     limit = rings["limit"][0]
     figure, (left, right) = style.panels((960, 500), 1, 2)
-
     style.level(left, limit, color=style.ORANGE, label="rare exchanges")
-    values = billiard["delta"], billiard["value"], billiard["standard_error"]
-    style.error_points(left, *values, style.BLUE, "billiard")
+    style.error_points(left, billiard["delta"], *measured(billiard), style.BLUE, "billiard")
     left.set(xlabel="δ", ylabel="conductivity / static value")
-
     infinite = 1000 * (limit - 1)
     style.level(right, infinite, color=style.ORANGE, label=f"infinite: {infinite:.4f}")
-    share, excess = 1 / rings["cells"].astype(float), 1000 * (rings["value"] - 1)
-    error = 1000 * rings["standard_error"]
-    style.error_points(right, share, excess, error, style.BLUE, "jump process, rings of N cells")
+    share, excess = 1 / rings["cells"].astype(float), measured(rings, zero=1, unit=0.001)
+    style.error_points(right, share, *excess, style.BLUE, "jump process, rings of N cells")
     right.set(xlabel="1/N", ylabel="1000 (conductivity / static value - 1)")
     for axes in (left, right):
         axes.set_xlim(0, axes.dataLim.xmax * 1.06)

@@ -5,14 +5,13 @@ t, over the conductivity kappa_0 at temperature 1, each divided by its limit of 
 principle. Lines are polynomials in 1/N. Time on one core: quick 30 s, default 3 min, full 10 min.
 """
 
-from typing import Any
-
 import numpy as np
 
 from ballpiston.figures.parts import fits, style
 from ballpiston.figures.parts.asking import RHO, Client, Shapes, answer, check_chains
 from ballpiston.figures.parts.charge import combined, correlations
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct, rows, table
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, groups, measured
+from ballpiston.figures.parts.tables import pick, rows, stacked, table
 from ballpiston.point import Point
 
 EFFORT = {
@@ -46,7 +45,7 @@ def measure(
     question |= {"model": "markov", "collisions": collisions, "seed": seed}
     result = answer(client, "gas-conduction", **question)
     rate = slowest_rate(hot, cold)
-    found = table(row for point in result for row in _scaled(point, (hot + cold) / 2, rate))
+    found = stacked(_scaled(point, (hot + cold) / 2, rate) for point in result)
     return {"full-counting": found, "full-counting-limits": extrapolated(found, hot, cold)}
 
 
@@ -72,29 +71,26 @@ def slowest_rate(hot: float, cold: float) -> float:
     return float(np.linalg.eigvalsh(matrix)[0])
 
 
-def _scaled(point: Point, temperature: float, rate: float) -> list[dict[str, float]]:
+def _scaled(point: Point, temperature: float, rate: float) -> Table:
     """One row for each cumulant and window. `time` is in units of the slowest decay; it is infinite
     for the current."""
     cells = int(point.parameters["cells"])
     ratio = point["conductivity_ratio"] * np.sqrt(temperature)
     kappa = _RATIO * point["conductivity"] / ratio
     unit = cells / kappa
-    current, error = point["heat_current"], point.error("heat_current")
-    assert error is not None
-    found: list[tuple[Any, ...]] = [(1, np.inf, current, error)]
-    for order in (2, 3, 4):
-        grown = combined(point, order, longer=2)
-        time = grown["time"] * rate * kappa / (_CAPACITY * cells**2)
-        chosen = (column[:_WINDOWS] for column in (time, grown["value"], grown["standard_error"]))
-        found += [(order, *numbers) for numbers in zip(*chosen)]
-    return [
-        {"cells": cells, "order": n, "time": t, "value": unit * value, "standard_error": unit * e}
-        for n, t, value, e in found
-    ]
-
-
-def _powers(x: FloatArray) -> FloatArray:
-    return np.vander(x, _DEGREE + 1, increasing=True)
+    current = {"time": np.inf, "value": point["heat_current"]}
+    found = [table([current | {"standard_error": point.error("heat_current")}])]
+    found += [pick(combined(point, n, longer=2), slice(_WINDOWS)) for n in (2, 3, 4)]
+    return stacked(
+        {
+            "cells": cells,
+            "order": order,
+            "time": grown["time"] * rate * kappa / (_CAPACITY * cells**2),
+            "value": unit * grown["value"],
+            "standard_error": unit * grown["standard_error"],
+        }
+        for order, grown in enumerate(found, 1)
+    )
 
 
 def transient(time: FloatArray) -> FloatArray:
@@ -109,12 +105,12 @@ def extrapolated(found: Table, hot: float, cold: float) -> Table:
     fitted = []
     for order, limit in enumerate(limits(hot, cold), 1):
         part = rows(found, order=order)
-        terms = _powers(1 / part["cells"].astype(float))
-        measured = part["value"], part["standard_error"], correlations(part["cells"], order)
-        plain = fit = fits.linear(terms, *measured)
+        terms = np.vander(1 / part["cells"].astype(float), _DEGREE + 1, increasing=True)
+        values = *measured(part), correlations(part["cells"], order)
+        plain = fit = fits.linear(terms, *values)
         if order > 2:
             terms = np.column_stack([terms, transient(part["time"])])
-            fit = fits.linear(terms, *measured)
+            fit = fits.linear(terms, *values)
         row = {"order": order, "limit": limit, "standard_error": fit.errors[0]}
         names = [f"a{k}" for k in range(_DEGREE + 1)] + ["b"]
         row |= {"b": 0.0} | dict(zip(names, fit.coefficients))
@@ -136,27 +132,25 @@ def draw(tables: Tables) -> style.Figure:
     return figure
 
 
-def _draw_cumulant(axes: Any, part: Table, fit: Table) -> None:
+def _draw_cumulant(axes: style.Axes, part: Table, fit: Table) -> None:
     if not len(part["cells"]):
         style.inside(axes, 0.5, 0.5, "not measured: too few collisions", ha="center")
         return
     limit, order = fit["limit"][0], int(fit["order"][0])
     settled = part | {"value": part["value"] - fit["b"][0] * transient(part["time"])}
-    chains = [rows(settled, cells=cells) for cells in distinct(part["cells"])]
-    means = []
-    for chain in chains:
-        measured = chain["value"], chain["standard_error"], correlations(chain["cells"], order)
-        means.append(fits.linear(np.ones((len(chain["cells"]), 1)), *measured))
-    share = np.array([1 / chain["cells"][0] for chain in chains])
-    x = np.linspace(0, 1.05 * share.max(), 100)
-    curve = _powers(x) @ [fit[f"a{k}"][0] for k in range(_DEGREE + 1)]
+    found = []
+    for (cells,), chain in groups(settled, "cells"):
+        values = *measured(chain), correlations(chain["cells"], order)
+        mean = fits.linear(np.ones((len(chain["cells"]), 1)), *values)
+        found.append({"share": 1 / cells} | mean.row("value"))
+    means = table(found)
+    x = np.linspace(0, 1.05 * means["share"].max(), 100)
+    curve = np.polyval([fit[f"a{k}"][0] for k in range(_DEGREE, -1, -1)], x)
     style.level(axes, 1, color=style.ORANGE, label=f"limit {limit:.5g}")
     axes.plot(x, curve / limit, color=style.GREY)
-    value = np.array([mean.coefficients[0] for mean in means]) / limit
-    error = np.array([mean.errors[0] for mean in means]) / limit
-    style.error_points(axes, share, value, error, style.BLUE)
-    end = {"color": style.GREEN, "label": "N → ∞"}
-    style.error_points(axes, [0], fit["a0"] / limit, fit["standard_error"] / limit, **end)
+    style.error_points(axes, means["share"], *measured(means, unit=limit), style.BLUE)
+    end = measured(fit, "a0", unit=limit)
+    style.error_points(axes, [0], *end, style.GREEN, "N → ∞")
     axes.set_xlim(-0.02 * x[-1], x[-1])
     style.widen(axes, 0.85, 1.3)
     axes.legend()

@@ -46,7 +46,6 @@ def measure(
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """The gas, with a scale of energies."""
     at = pick(tables["gas-geometry"], 0)
     wide, high = at["columns"] + 2 * _MARGIN, at["rows"] + 2 * _MARGIN
     figure = style.picture(960, max(260.0, 840 * high / wide))
@@ -63,37 +62,28 @@ def draw(tables: Tables) -> style.Figure:
     reaches = [(corner, *size) for corner, size in zip(corners, 2 * half)]
     for reach in reaches:
         axes.add_patch(Rectangle(*reach, facecolor="#efefef", edgecolor=style.EDGE))
-    for i in range(int(at["columns"])):
-        for j in range(int(at["rows"])):
-            outline = cell_outline.outline(at["rho"]) + np.array([i, j])
-            axes.add_patch(Polygon(outline, facecolor="white", edgecolor=style.EDGE, linewidth=1.2))
+    for cell in np.ndindex(int(at["columns"]), int(at["rows"])):
+        outline = cell_outline.outline(at["rho"]) + np.array(cell)
+        axes.add_patch(Polygon(outline, facecolor="white", edgecolor=style.EDGE, linewidth=1.2))
     for reach in reaches:
         axes.add_patch(Rectangle(*reach, fill=False, edgecolor=style.EDGE, linestyle=(0, (4, 4))))
     scale = style.energy_bar(figure, axes, _BRIGHTEST, "energy/T", shrink=0.7, pad=0.01)
     half = np.where(is_along, 0, at["eta"] / 2)
-    colours = _draw_arrows(axes, pistons, at["temperature"], scale)
     segments = np.stack([place - half, place + half], axis=1)
-    shown: dict[str, Any] = {"colors": colours, "linewidths": 4, "capstyle": "butt", "zorder": 2}
-    axes.add_collection(LineCollection(segments, **shown))
     balls = tables["gas-balls"]
-    colours = _draw_arrows(axes, balls, at["temperature"], scale)
-    axes.scatter(balls["x"], balls["y"], c=colours, s=36, zorder=4)
+    colours = [scale.to_rgba(body["energy"] / at["temperature"]) for body in (pistons, balls)]
+    for body, colour in zip((pistons, balls), colours):
+        unit = np.sqrt(at["temperature"]) / _ARROW
+        style.arrows(axes, body, unit, color=colour, width=0.003, zorder=4)
+    shown: dict[str, Any] = {"linewidths": 4, "capstyle": "butt", "zorder": 2}
+    axes.add_collection(LineCollection(segments, colors=colours[0], **shown))
+    axes.scatter(balls["x"], balls["y"], c=colours[1], s=36, zorder=4)
     return figure
 
 
 def _with_copies(pistons: Table, at: dict[str, Any]) -> Table:
     """With those of the first column and row again at the opposite end of the periodic gas."""
-    is_first = np.where(pistons["vertical"], pistons["x"], pistons["y"]) < 0
-    copies = pick(pistons, is_first)
+    copies = pick(pistons, np.where(pistons["vertical"], pistons["x"], pistons["y"]) < 0)
     copies["x"] = copies["x"] + np.where(copies["vertical"], at["columns"], 0)
     copies["y"] = copies["y"] + np.where(copies["vertical"], 0, at["rows"])
     return stacked([pistons, copies])
-
-
-def _draw_arrows(axes: Any, bodies: Table, temperature: float, scale: Any) -> Any:
-    """The velocities; returns the colours of the energies."""
-    colours = scale.to_rgba(bodies["energy"] / temperature)
-    arrow = {"angles": "xy", "scale_units": "xy", "scale": np.sqrt(temperature) / _ARROW}
-    x, y, vx, vy = (bodies[name] for name in ("x", "y", "vx", "vy"))
-    axes.quiver(x, y, vx, vy, color=colours, width=0.003, zorder=4, **arrow)
-    return colours

@@ -4,8 +4,8 @@ One column for each energy of the piston. Above: the probability that ball and p
 collided up to the time t after a collision, for several delta, and the exponential law (black).
 Below: the difference from the exponential law, with one standard error. Time is in units of the
 conditional mean free time, so that the exponential law is exp(-t). All points of a line come from
-the same hits. Therefore neighbouring points have nearly the same statistical error. The lines have
-steps, because the piston reaches the cell once in its period (2 lambda + 4 delta)/u.
+the same hits: neighbouring points have nearly the same statistical error. The lines have steps,
+because the piston reaches the cell once in its period (2 lambda + 4 delta)/u.
 Time on two cores: quick 1 s, default 25 s, full 8 min.
 """
 
@@ -35,10 +35,8 @@ def measure(
     samples: float = 1_000_000,
     seed: int = 0,
 ) -> Tables:
-    """The curves `survival`: the probability that ball and piston have not collided up to a time.
-    At energies other than 0 and 1/2 their limit is the exponential law with the same mean free
-    time. `t` is the time in units of the conditional mean free time. `samples` are the first
-    hits of each line."""
+    """The curves `survival`, where `t` is the time in units of the conditional mean free time. At
+    energies other than 0 and 1/2 their limit is the exponential law."""
     question = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
     result = answer(client, "first-hit", samples=samples, seed=seed, **question)
     survival = curves(result, "survival")

@@ -7,8 +7,6 @@ sigma = +1 is zero if the piston is faster than the ball, epsilon >= 1/4.
 Time on two cores: quick 1 s, default 10 s, full 1 min.
 """
 
-from typing import Any
-
 import numpy as np
 
 from ballpiston.figures.parts import style
@@ -36,8 +34,7 @@ def measure(
     merged: int = 20,
 ) -> Tables:
     """Histograms with wider bins: `merged` of the server's 1000 bins are one bin of the picture.
-    Fewer samples need wider bins; otherwise the noise hides the deviation. `samples` are the first
-    hits of each panel."""
+    Fewer samples need wider bins; otherwise the noise hides the deviation."""
     question = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
     result = answer(client, "first-hit", samples=samples, seed=seed, **question)
     return {"ingoing-law": merge(rows(histograms(result), name="alpha"), merged)}
@@ -46,24 +43,21 @@ def measure(
 def merge(bins: Table, merged: int) -> Table:
     """Histograms with `merged` neighbouring bins in one. Densities are means over a bin; `error` is
     the standard error; that of an empty bin is the error of the count expected from h^(1)."""
-    keys = ("delta", "epsilon", "exponent", "sigma")
-    return stacked(_merged(part, keys, merged) for _, part in groups(bins, *keys))
-
-
-def _merged(bins: Table, keys: tuple[str, ...], merged: int) -> Table:
-    starts = np.arange(0, len(bins["lower"]), merged)
-    ends = np.append(starts[1:], len(bins["lower"])) - 1
-    sizes = ends - starts + 1
-    lower, upper = bins["lower"][starts], bins["upper"][ends]
-    counts = np.add.reduceat(bins["count"], starts)
-    exact = np.add.reduceat(bins["exact_density"], starts) / sizes
-    total = bins["samples"][0] * (upper - lower)  # the count at the density 1
-    return {name: bins[name][starts] for name in keys} | {
-        "alpha": (lower + upper) / 2,
-        "density": np.add.reduceat(bins["density"], starts) / sizes,
-        "error": np.sqrt(np.where(counts > 0, counts, exact * total)) / total,
-        "exact_density": exact,
-    }
+    keys, found = ("delta", "epsilon", "exponent", "sigma"), []
+    for values, part in groups(bins, *keys):
+        starts = np.arange(0, len(part["lower"]), merged)
+        ends = np.append(starts[1:], len(part["lower"])) - 1
+        sizes = ends - starts + 1
+        lower, upper = part["lower"][starts], part["upper"][ends]
+        counts, density, exact = (
+            np.add.reduceat(part[name], starts) for name in ("count", "density", "exact_density")
+        )
+        exact /= sizes
+        total = part["samples"][0] * (upper - lower)  # the count at the density 1
+        error = np.sqrt(np.where(counts > 0, counts, exact * total)) / total
+        row = dict(zip(keys, values)) | {"alpha": (lower + upper) / 2, "density": density / sizes}
+        found.append(row | {"error": error, "exact_density": exact})
+    return stacked(found)
 
 
 @style.styled
@@ -78,7 +72,12 @@ def draw(tables: Tables) -> style.Figure:
         for axes, delta in zip(row, deltas):
             for sigma, sign, colour in _SIGNS:
                 law = rows(data, delta=delta, epsilon=epsilon, sigma=sigma)
-                _draw_law(axes, law, colour, f"σ = {sign}1")
+                x, density, exact = law["alpha"], law["density"], law["exact_density"]
+                low, high = density - law["error"], density + law["error"]
+                label, area = f"σ = {sign}1", {"color": colour, "linewidth": 0}
+                axes.plot(x, density, color=colour, linewidth=1.2, label=label)
+                axes.fill_between(x, exact, alpha=0.25, label=f"h$^{{(1)}}$, {label}", **area)
+                axes.fill_between(x, low, high, alpha=0.35, **area)
         row[0].set_ylim(0, None)
         style.inside(row[0], 0.04, 0.88, f"ε = {epsilon:g}")
     for axes, delta in zip(panels[0], deltas):
@@ -89,12 +88,3 @@ def draw(tables: Tables) -> style.Figure:
     figure.supylabel("density")
     style.top_legend(figure, panels[0, 0].get_legend_handles_labels()[0])
     return figure
-
-
-def _draw_law(axes: Any, law: Table, colour: str, label: str) -> None:
-    low, high = law["density"] - law["error"], law["density"] + law["error"]
-    area: dict[str, Any] = {"color": colour, "linewidth": 0}
-    axes.plot(law["alpha"], law["density"], color=colour, linewidth=1.2, label=label)
-    exact = law["exact_density"]
-    axes.fill_between(law["alpha"], exact, alpha=0.25, label=f"h$^{{(1)}}$, {label}", **area)
-    axes.fill_between(law["alpha"], low, high, alpha=0.35, **area)

@@ -12,7 +12,7 @@ import numpy as np
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, Client, Numbers
-from ballpiston.figures.parts.tables import Table, Tables, rows, stacked
+from ballpiston.figures.parts.tables import Table, Tables, measured, rows, stacked
 
 EFFORT = {"quick": {"collisions": 1e4, "bins": 8}, "full": {"collisions": 3e6, "bins": 40}}
 
@@ -42,9 +42,9 @@ def measure(
         {"epsilon": energy, "outgoing": outgoing, "density": kernel / rate}
         for energy, rate, kernel in zip(energies, forms["f"][0], forms["kernel"][0])
     )
-    pair = {"rho": rho, "delta": delta, "model": "billiard", "seed": seed}
+    question: dict[str, Any] = {"rho": rho, "delta": delta, "model": "billiard", "seed": seed}
     names = ("piston_energy", "piston_energy_after")
-    sample = client.sample("equilibrium", collisions=collisions, **pair)
+    sample = client.sample("equilibrium", collisions=collisions, **question)
     parts = [[part[name].copy() for name in names] for part in sample]
     hits = dict(zip(names, map(np.concatenate, zip(*parts))))
     return {"kernel-exact": exact, "kernel-measured": densities(energies, hits, bins)}
@@ -57,32 +57,25 @@ def densities(energies: Iterable[float], collisions: Table, bins: int) -> Table:
     is finite at 0. They end four windows below the largest outgoing energy, 1/2 - epsilon, where W
     diverges: nearer to it, the mean over a window is above W by more than 2 %. Energies without a
     collision or without a bin are left out. An empty bin has the error of one collision."""
-    return stacked(part for energy in energies if (part := _densities_at(energy, collisions, bins)))
-
-
-def _densities_at(energy: float, collisions: Table, bins: int) -> dict[str, Any]:
-    is_near = np.abs(collisions["piston_energy"] - energy) < _WINDOW
-    chosen = collisions["piston_energy_after"][is_near]
-    end = 1 - 2 * (energy + _MARGIN * _WINDOW)
-    if end <= 0 or not len(chosen):
-        return {}
-    edges = np.linspace(0, np.sqrt(end), bins + 1)
-    u = (edges[:-1] + edges[1:]) / 2
-    counts, _ = np.histogram(np.sqrt(2 * chosen), edges)
-    scale = len(chosen) * u * np.sqrt(end) / bins
-    return {
-        "epsilon": energy,
-        "outgoing": u**2 / 2,
-        "density": counts / scale,
-        "standard_error": np.sqrt(np.maximum(counts, 1)) / scale,
-        "count": counts,
-        "samples": len(chosen),
-    }
+    found = []
+    for energy in energies:
+        is_near = np.abs(collisions["piston_energy"] - energy) < _WINDOW
+        chosen = collisions["piston_energy_after"][is_near]
+        end = 1 - 2 * (energy + _MARGIN * _WINDOW)
+        if end <= 0 or not len(chosen):
+            continue
+        edges = np.linspace(0, np.sqrt(end), bins + 1)
+        u = (edges[:-1] + edges[1:]) / 2
+        counts, _ = np.histogram(np.sqrt(2 * chosen), edges)
+        scale = len(chosen) * u * np.sqrt(end) / bins
+        error = np.sqrt(np.maximum(counts, 1)) / scale
+        part = {"epsilon": energy, "outgoing": u**2 / 2, "density": counts / scale}
+        found.append(part | {"standard_error": error, "count": counts, "samples": len(chosen)})
+    return stacked(found)
 
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """One panel for each energy before the collision."""
     energies = style.series(tables["kernel-exact"], "epsilon", "ε")
     lines = (len(energies) + 1) // 2
     figure, panels = style.panels((960, 350 * lines), lines, 2, sharex=True, squeeze=False)
@@ -92,8 +85,7 @@ def draw(tables: Tables) -> style.Figure:
         axes.plot(exact["outgoing"][seen], exact["density"][seen], color=style.BLACK)
         if tables["kernel-measured"]:
             near = rows(tables["kernel-measured"], epsilon=energy)
-            error = near["standard_error"]
-            style.error_points(axes, near["outgoing"], near["density"], error, colour)
+            style.error_points(axes, near["outgoing"], *measured(near, "density"), colour)
         axes.set_ylim(0, _HIGHEST / (0.5 - min(energy, 0.49)))
         # Left or right of the curve that rises at 1/2 - epsilon.
         style.inside(axes, 0.35 if energy < 0.2 else 0.85, 0.9, label, ha="center")

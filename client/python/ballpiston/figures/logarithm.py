@@ -13,24 +13,15 @@ A hollow point has too few events for an error.
 The program `slow_pistons` measures them. Time on one core: quick 5 s, default 2 min, full 15 min.
 """
 
-from typing import Any
-
 import numpy as np
 
 from ballpiston.figures.parts import fits, style
 from ballpiston.figures.parts.asking import RHO, Client, Numbers, number_list
 from ballpiston.figures.parts.programs import table_of
-from ballpiston.figures.parts.tables import (
-    FloatArray,
-    Table,
-    Tables,
-    distinct,
-    rows,
-    stacked,
-    table,
-)
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, groups
+from ballpiston.figures.parts.tables import measured, rows, stacked, table
 
-EFFORT: dict[str, dict[str, Any]] = {"quick": {"samples": 2048}, "full": {"samples": 131_072}}
+EFFORT = {"quick": {"samples": 2048}, "full": {"samples": 131_072}}
 
 PARTS = ("all", "idle", "met")
 _INTEGRAL_TIME = 0.541387668432  # of the limit, in mean free times (docs/research/markov-limit.md)
@@ -75,8 +66,7 @@ def measure(
 def excess(windows: Table, part: str) -> tuple[FloatArray, FloatArray]:
     """The difference of a part from its limit, a share of the limit's integral time, and its
     error."""
-    value = windows[part] - _limit(windows, part)
-    return value / _INTEGRAL_TIME, windows[f"{part}_error"] / _INTEGRAL_TIME
+    return measured(windows, part, _limit(windows, part), _INTEGRAL_TIME)
 
 
 def _limit(windows: Table, part: str) -> FloatArray:
@@ -101,8 +91,7 @@ def logarithms_of_window(whole: Table) -> Table:
     """Of both parts and at each delta from 0.05 on, a fit of the growth from W to 2 W by
     ratio law ln 2 + c/(2 W). `law` is that of slow pistons; slow balls have a term 1/W."""
     found = []
-    for delta in distinct(whole["delta"]):
-        windows = rows(whole, delta=delta)
+    for (delta,), windows in groups(whole, "delta"):
         if delta < _FEWER_BELOW:
             continue  # too few orbits have a piston that is slow enough
         row = {"delta": delta, "law": windows["law"][0] / _INTEGRAL_TIME}
@@ -119,30 +108,27 @@ def _growth(windows: Table, part: str) -> fits.Fit:
     enough events have none, and are left out."""
     value = np.diff(windows[f"later_{part}"] - _limit(windows, part))
     error = np.sqrt(np.maximum(np.diff(windows[f"later_{part}_error"] ** 2), 0))
-    measured = error > 0
+    known = error > 0
     shorter = windows["window"][:-1]
     terms = np.column_stack([windows["law"][:-1] * np.log(2), 1 / (2 * shorter)])
-    return fits.linear(terms[measured], value[measured], error[measured])
+    return fits.linear(terms[known], value[known], error[known])
 
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """Both panels."""
     whole = tables["logarithm"]
-    growth = f"growth beyond 8, δ = {whole['delta'][0]:g}"
-    titles = (growth, "difference up to 8, over x")
+    titles = f"growth beyond 8, δ = {whole['delta'][0]:g}", "difference up to 8, over x"
     figure, (left, right) = style.panels((960, 480), 1, 2, titles)
     _draw_growth(left, rows(whole, delta=whole["delta"][0]))
     first = rows(whole, window=whole["window"].min())
     for k, part in enumerate(PARTS):
-        value, error = excess(first, part)
         logarithm = np.log(1 / first["x"])
         fit = rows(tables["logarithm-delta"], part=part)
         line = np.linspace(logarithm.min(), logarithm.max(), 2)
         right.plot(line, fit["a"] + fit["b"] * line, color=style.colour(k))
         aside = _ASIDE * (k - 1) if len(logarithm) > 1 else 0
-        shown = logarithm + aside, value / first["x"], error / first["x"]
-        style.error_points(right, *shown, style.colour(k), part)
+        value, error = (column / first["x"] for column in excess(first, part))
+        style.error_points(right, logarithm + aside, value, error, style.colour(k), part)
     style.level(right, 0)
     style.widen(right, *_SHOWN)
     right.set(xlabel="log(1/x)")
@@ -150,13 +136,13 @@ def draw(tables: Tables) -> style.Figure:
     return figure
 
 
-def _draw_growth(axes: Any, windows: Table) -> None:
+def _draw_growth(axes: style.Axes, windows: Table) -> None:
     logarithm = np.log(windows["window"] / windows["window"][0])
     law = windows["law"] * logarithm / _INTEGRAL_TIME
     axes.plot(windows["window"], law, color=style.BLACK, label="law of slow pistons")
     for k, part in enumerate(PARTS[1:], 1):
-        value, error = (windows[f"later_{part}{end}"] / _INTEGRAL_TIME for end in ("", "_error"))
-        style.error_points(axes, windows["window"], value, error, style.colour(k), part)
+        values = measured(windows, f"later_{part}", unit=_INTEGRAL_TIME)
+        style.error_points(axes, windows["window"], *values, style.colour(k), part)
     style.level(axes, 0)
     axes.set_xscale("log")
     style.plain_log_ticks(axes.xaxis, windows["window"].tolist())

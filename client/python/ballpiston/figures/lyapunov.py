@@ -16,12 +16,11 @@ from typing import Any
 import numpy as np
 
 from ballpiston.figures.parts import fits, style
-from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer
-from ballpiston.figures.parts.asking import mean_free_times, number_list
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, pick, rows, table
+from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer, number_list
+from ballpiston.figures.parts.tables import Table, Tables, measured, pick, table
 from ballpiston.figures.parts.tangent_growth import second_exponent
 
-EFFORT: dict[str, dict[str, Any]] = {
+EFFORT = {
     "quick": {"delta": "0.3,0.05,0.03,0.02,0.015,0.01", "collisions": 1e4, "samples": 2**14},
     "full": {"collisions": 1e6, "samples": 2**20},
 }
@@ -29,7 +28,7 @@ EFFORT: dict[str, dict[str, Any]] = {
 _FEWER_BELOW = 0.02  # collisions cost 1/delta^2; below this delta there are fewer of them
 _FEWEST = 6400  # for which the server states errors
 _RARE = 0.03  # fits are to this delta and below
-_LIMIT = 1e-7  # a delta that stands for the limit
+# The first delta stands for the limit.
 _CURVE = "0.0000001,0.000001,0.00001:0.001:9:log,0.0014:{end!r}:30:log"
 _CURVE_END = 0.3
 
@@ -45,12 +44,16 @@ def measure(
 ) -> Tables:
     """The exponents at each delta from `collisions`, in proportion to delta below 0.02; what is
     computed for lambda_2 from `samples` single collisions; and fits."""
-    tau = mean_free_times(client, rho, delta)
-    found = []
-    for k, d in enumerate(number_list("delta", delta)):
-        count = max(_FEWEST, collisions * min(1.0, d / _FEWER_BELOW))
-        row = _exponents(client, rho, d, count, seed) | {"tau": tau[d]}
-        found.append(row | second_exponent(rho, d, tau[d], samples, seed + 1 + k)._asdict())
+    second = "lyapunov_2_per_collision"
+    question: dict[str, Any] = {"rho": rho, "model": "billiard", "seed": seed, "estimate": second}
+    forms, found = client.analytic(rho, delta), []
+    for k, (d, tau) in enumerate(zip(forms["delta"].tolist(), forms["tau_ball_piston"].tolist())):
+        count = round(max(_FEWEST, collisions * min(1.0, d / _FEWER_BELOW)))
+        (point,) = answer(client, "lyapunov", delta=d, collisions=count, **question)
+        row: dict[str, Any] = {"delta": d, "samples": point.samples}
+        for name, estimate in (("lambda_1", "lyapunov_1"), ("value", second)):
+            row |= {name: point[estimate], f"{name}_error": point.error(estimate)}
+        found.append(row | {"tau": tau} | second_exponent(rho, d, tau, samples, seed + 1 + k))
     whole = table(found)
     return {
         "lyapunov": whole,
@@ -59,29 +62,16 @@ def measure(
     }
 
 
-def _exponents(
-    client: Client, rho: float, delta: float, collisions: float, seed: int
-) -> dict[str, float]:
-    question = {"rho": rho, "delta": delta, "model": "billiard", "seed": seed}
-    aim = {"estimate": "lyapunov_2_per_collision", "collisions": round(collisions)}
-    (point,) = answer(client, "lyapunov", **question, **aim)
-    row = {"delta": delta, "samples": point.samples}
-    for name, estimate in (("lambda_1", "lyapunov_1"), ("value", aim["estimate"])):
-        of = point.estimates[str(estimate)]
-        row |= {name: of.value, f"{name}_error": float(of.standard_error or np.nan)}
-    return row
-
-
 def _curve(client: Client, rho: float, samples: int, seed: int) -> Table:
     """The exponents up to delta = 0.3, or to the largest permitted delta if that is smaller. Every
     delta has the same random numbers, so the curve is smooth."""
     end = min(_CURVE_END, (1 - math.sqrt(4 * rho**2 - 1)) / 2)
     deltas = [d for d in number_list("delta", _CURVE.format(end=end)) if d <= end]
-    found = []
-    for delta, tau in mean_free_times(client, rho, deltas).items():
-        growth = second_exponent(rho, delta, tau, samples, seed)
-        found.append({"delta": delta, "tau": tau} | growth._asdict())
-    return table(found)
+    times = client.analytic(rho, deltas)["tau_ball_piston"].tolist()
+    return table(
+        {"delta": delta, "tau": tau} | second_exponent(rho, delta, tau, samples, seed)
+        for delta, tau in zip(deltas, times)
+    )
 
 
 def laws(whole: Table) -> Table:
@@ -95,55 +85,41 @@ def laws(whole: Table) -> Table:
     with_root = np.column_stack([line, np.sqrt(rare["delta"])])
     rest = value - (rare["computed"] - log_tau)
     rest_error = np.hypot(error, rare["computed_error"])
-    computed = {"values": rest, "errors": rest_error}
-    measured = {"values": value, "errors": error}
-    models: dict[str, dict[str, FloatArray]] = {
-        "constant": {"terms": line[:, :1]} | measured,
-        "power": {"terms": line, "values": np.log(value), "errors": error / value},
-        "logarithm": {"terms": line} | measured,
-        "logarithm and root": {"terms": with_root} | measured,
-        "logarithm and computed terms": {"terms": line} | computed,
-        "computed": {"terms": line[:, :0], "values": rest - log_tau, "errors": rest_error},
+    models = {
+        "constant": (line[:, :1], value, error),
+        "power": (line, np.log(value), error / value),
+        "logarithm": (line, value, error),
+        "logarithm and root": (with_root, value, error),
+        "logarithm and computed terms": (line, rest, rest_error),
+        "computed": (line[:, :0], rest - log_tau, rest_error),
     }
     found = (
-        {"law": name} | fits.linear(**model).row("A", "B")
-        for name, model in models.items()
-        if len(value) >= model["terms"].shape[1]
+        {"law": name} | fits.linear(terms, *values).row("A", "B")
+        for name, (terms, *values) in models.items()
+        if len(value) >= terms.shape[1]
     )
     return table(found, ("law", "A", "A_error", "B", "B_error", "chi_squared", "freedom"))
 
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """Both panels."""
     figure, (left, right) = style.panels((960, 480), 1, 2, ("λ$_2$τ", "λ$_2$τ - ln τ"))
     found, curve = tables["lyapunov"], tables["lyapunov-curve"]
-    (limit,) = _above_logarithm(rows(curve, delta=_LIMIT), "computed")
-    _draw_growth(left, found, curve, limit)
-    root = np.sqrt(curve["delta"])
-    right.plot(root, _above_logarithm(curve, "computed"), color=style.BLACK, label="computed")
-    plain = _above_logarithm(curve, "long_waits")
-    right.plot(root, plain, "--", color=style.GREY, label="computed, long waits")
-    style.level(right, limit, linestyle=":")
-    value = _above_logarithm(found, "value")
-    style.error_points(right, np.sqrt(found["delta"]), value, found["value_error"], style.BLUE)
+    root, logarithm = np.sqrt(curve["delta"]), np.log(curve["tau"])
+    computed, long_waits = curve["computed"] - logarithm, curve["long_waits"] - logarithm
+    tau = np.geomspace(found["tau"].min() / 2, found["tau"].max() * 2, 100)
+    law = f"ln τ + {computed[0]:.3f}"
+    left.plot(tau, np.log(tau) + computed[0], ":", color=style.BLACK, label=law)
+    shown = pick(curve, curve["tau"] < tau[-1])
+    left.plot(shown["tau"], shown["computed"], color=style.BLACK, label="computed")
+    style.error_points(left, found["tau"], *measured(found), style.BLUE, "billiard")
+    left.set(xscale="log", xlabel="mean free time τ", xlim=(tau[0], tau[-1]))
+    left.legend(loc="upper left")
+    right.plot(root, computed, color=style.BLACK, label="computed")
+    right.plot(root, long_waits, "--", color=style.GREY, label="computed, long waits")
+    style.level(right, computed[0], linestyle=":")
+    values = measured(found, zero=np.log(found["tau"]))
+    style.error_points(right, np.sqrt(found["delta"]), *values, style.BLUE)
     right.set(xlabel="√δ")
     right.legend()
     return figure
-
-
-def _above_logarithm(part: Table, name: str) -> FloatArray:
-    above: FloatArray = part[name] - np.log(part["tau"])
-    return above
-
-
-def _draw_growth(axes: Any, found: Table, curve: Table, limit: float) -> None:
-    tau = np.geomspace(found["tau"].min() / 2, found["tau"].max() * 2, 100)
-    axes.plot(tau, np.log(tau) + limit, ":", color=style.BLACK, label=f"ln τ + {limit:.3f}")
-    shown = pick(curve, curve["tau"] < tau[-1])
-    axes.plot(shown["tau"], shown["computed"], color=style.BLACK, label="computed")
-    measured = found["tau"], found["value"], found["value_error"]
-    style.error_points(axes, *measured, style.BLUE, "billiard")
-    axes.set_xscale("log")
-    axes.set(xlabel="mean free time τ", xlim=(tau[0], tau[-1]))
-    axes.legend(loc="upper left")

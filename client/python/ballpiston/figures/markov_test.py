@@ -19,7 +19,7 @@ from ballpiston.figures.parts import oscillation, style
 from ballpiston.figures.parts.asking import ENERGIES, RHO, Client, Numbers, answer, divergences
 from ballpiston.figures.parts.tables import Table, Tables, distinct, groups, pick, rows, stacked
 
-EFFORT: dict[str, dict[str, Any]] = {
+EFFORT = {
     "quick": {"delta": "0.1:0.325:16:log", "samples": 30_000, "synthetic": 20},
     "full": {"samples": 4_000_000},
 }
@@ -109,22 +109,16 @@ def maxima(points: Table) -> Table:
 def _highest_points(y: Any, error: Any) -> Iterator[int]:
     """The positions of the maxima. One counts if on both sides the excess falls by 15 percent and
     by 3 standard errors before it is higher again."""
-
-    def is_lower(i: int, j: int) -> bool:
-        return bool(y[i] < 0.85 * y[j] and y[j] - y[i] > 3 * np.hypot(error[i], error[j]))
-
-    top = bottom = 0
-    is_rising = False
+    extreme, sign = 0, -1  # the highest (1) or lowest (-1) point since the last turn
     for i in range(1, len(y)):
-        if is_rising and y[i] > y[top]:
-            top = i
-        elif is_rising and is_lower(i, top):
-            yield top
-            is_rising, bottom = False, i
-        elif not is_rising and y[i] < y[bottom]:
-            bottom = i
-        elif not is_rising and is_lower(bottom, i):
-            is_rising, top = True, i
+        low, high = (i, extreme) if sign > 0 else (extreme, i)
+        certain = 3 * np.hypot(error[low], error[high])
+        if sign * y[i] > sign * y[extreme]:
+            extreme = i
+        elif y[low] < 0.85 * y[high] and y[high] - y[low] > certain:
+            if sign > 0:
+                yield extreme
+            extreme, sign = i, -sign
 
 
 def _top(x: Any, y: Any, i: int) -> float:
@@ -140,7 +134,6 @@ def _top(x: Any, y: Any, i: int) -> float:
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """One panel for each exponent."""
     data = tables["markov-test-excess"]
     exponents = distinct(data["exponent"])
     across = min(2, len(exponents))

@@ -8,7 +8,6 @@ orbits, from the master equation, is above the panel.
 Time on two cores: quick 1 s, default 10 s, full 2 min.
 """
 
-import itertools
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ import numpy as np
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer
 from ballpiston.figures.parts.asking import in_mean_free_times, number_list
-from ballpiston.figures.parts.tables import Table, Tables, distinct, histograms, rows, stacked
+from ballpiston.figures.parts.tables import Table, Tables, groups, histograms, rows, stacked
 
 EFFORT = {"quick": {"samples": 20_000}, "full": {"samples": 10_000_000}}
 
@@ -71,19 +70,18 @@ def beside_exact(bins: Table) -> Table:
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """Six times for each start energy."""
     data = tables["master-equation"]
-    series = distinct(zip(data["model"], data["delta"]))
-    cases = list(itertools.product(distinct(data["epsilon"]), distinct(data["time"])))
+    cases = list(groups(data, "epsilon", "time"))
     blocks = [cases[k : k + _ACROSS] for k in range(0, len(cases), _ACROSS)]
     size = 360 * _ACROSS + 90, 350 * len(blocks) + 60
     shared: dict[str, Any] = style.SHARED | {"height_ratios": (2, 1) * len(blocks)}
     figure, panels = style.panels(size, 2 * len(blocks), _ACROSS, **shared)
     for k, block in enumerate(blocks):
-        for upper, lower, (start, time) in zip(panels[2 * k], panels[2 * k + 1], block):
-            law = rows(data, epsilon=start, time=time)
-            _draw_law(upper, lower, law, series)
-            peak = 100 * _share_of_start(rows(law, model=series[0][0], delta=series[0][1]), start)
+        for upper, lower, ((start, time), law) in zip(panels[2 * k], panels[2 * k + 1], block):
+            _draw_law(upper, lower, law)
+            (_, first), *_ = groups(law, "model", "delta")
+            there = np.searchsorted(first["lower"], start, "right") - 1  # the start's bin
+            peak = 100 * (first["exact"] * (first["upper"] - first["lower"]))[there]
             upper.set_title(
                 f"t = {time:g} τ$_{{bp}}$   (bin of ε = {start:g}: {peak:.3g} %)", fontsize=11
             )
@@ -97,10 +95,10 @@ def draw(tables: Tables) -> style.Figure:
     return figure
 
 
-def _draw_law(upper: Any, lower: Any, law: Table, series: list[Any]) -> None:
+def _draw_law(upper: Any, lower: Any, law: Table) -> None:
     """The points of the series are side by side in their bin."""
-    for k, (model, delta) in enumerate(series):
-        part = rows(law, model=model, delta=delta)
+    series = list(groups(law, "model", "delta"))
+    for k, ((model, delta), part) in enumerate(series):
         place = part["lower"] + (k + 0.5) / len(series) * (part["upper"] - part["lower"])
         seen = part["density"] > 0
         dots: dict[str, Any] = {"color": style.colour(k), "markersize": 2}
@@ -111,9 +109,3 @@ def _draw_law(upper: Any, lower: Any, law: Table, series: list[Any]) -> None:
     exact: dict[str, Any] = {"color": style.BLACK, "linewidth": 1, "label": "master equation"}
     upper.stairs(part["exact"], edges, baseline=None, **exact)
     style.level(lower, 1)
-
-
-def _share_of_start(law: Table, start: float) -> float:
-    """The exact probability of the bin of the start energy."""
-    there = np.searchsorted(law["lower"], start, "right") - 1
-    return float((law["exact"] * (law["upper"] - law["lower"]))[there])

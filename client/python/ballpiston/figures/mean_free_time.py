@@ -53,7 +53,6 @@ def measure(
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """The collapse, and the rates in an inset."""
     measured = rows(tables["mean-free-time"], name="mean_free_time_conditional")
     inset = rows(tables["mean-free-time-inset"], name="mean_free_time_ball_piston")
     figure = style.picture(960, 640)
@@ -72,9 +71,8 @@ def draw(tables: Tables) -> style.Figure:
 def _draw_rates(axes: Any, part: Table, x: str, unit: float, **style_of: Any) -> None:
     """Measured times as rates, in units of 1/unit."""
     rate = unit / part["value"]
-    style.error_points(
-        axes, part[x], rate, rate * part["standard_error"] / part["value"], **style_of
-    )
+    error = rate * part["standard_error"] / part["value"]
+    style.error_points(axes, part[x], rate, error, **style_of)
 
 
 def _draw_inset(axes: Any, inset: Table, exact: Table) -> None:

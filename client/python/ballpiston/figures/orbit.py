@@ -16,16 +16,12 @@ from ballpiston.figures.parts.asking import RHO, Client
 from ballpiston.figures.parts.tables import Table, Tables, pick, rows, table
 
 _SHOWN_TIME = 25.0  # of the path and the positions; longer curves would be too dense
+_FIELDS = ("x", "y", "energy")
 _MEETING = {"color": style.BLACK, "markersize": 6, "fillstyle": "none", "linestyle": ""}
 
 
 def measure(
-    client: Client,
-    *,
-    rho: float = RHO,
-    delta: float = 0.3,
-    seed: int = 0,
-    events: int = 200,
+    client: Client, *, rho: float = RHO, delta: float = 0.3, seed: int = 0, events: int = 200
 ) -> Tables:
     """The start and all events of each body, and one row with the geometry. delta is large, so that
     ball and piston collide often."""
@@ -39,12 +35,8 @@ def measure(
     return tables | {"orbit-geometry": geometry}
 
 
-_FIELDS = ("x", "y", "energy")
-
-
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """Path, energies and positions."""
     at = pick(tables["orbit-geometry"], 0)
     bodies = {"ball": tables["orbit-ball"], "piston": tables["orbit-piston"]}
     end = min(body["time"][-1] for body in bodies.values())

@@ -12,18 +12,16 @@ All values of a line come from the same orbits. Therefore neighbouring points ha
 statistical error. Time on two cores: quick 3 s, default 25 s, full 4 min.
 """
 
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, Client, Numbers
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, rows, stacked
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, distinct
+from ballpiston.figures.parts.tables import measured, rows, stacked
 
-EFFORT = {
-    "quick": {"events": 40_000},
-    "full": {"orbits": 20, "events": 1_000_000},
-}
+EFFORT = {"quick": {"events": 40_000}, "full": {"orbits": 20, "events": 1_000_000}}
 
 _BATCHES = 8  # of each orbit; their scatter gives the standard errors
 _FEWEST_GAPS = 50  # for which an error is stated
@@ -31,17 +29,6 @@ _HALF_WIDTH = 0.02  # a conditional rate is the rate at all energies within epsi
 _ENERGIES = 20  # the exact conditional rate is averaged over this number of energies
 _LENGTHS = 1e-4 * 10 ** (np.arange(17) / 4)  # of the windows, in units of the mean free time
 _ASIDE = 1.12  # the points of successive energies are shifted in time by this factor
-
-
-class Kind(NamedTuple):
-    """A kind of events, the energies of the piston from `lower` to `upper` (all, if the kind is not
-    "conditional"), and its exact rate."""
-
-    kind: str
-    epsilon: float
-    lower: float
-    upper: float
-    exact: float
 
 
 def measure(
@@ -59,27 +46,28 @@ def measure(
     if events < _BATCHES:
         raise ValueError(f"events is {events}; permitted: {_BATCHES} to 1000000")
     kinds = _kinds(client, rho, delta, epsilon)
-    batches: dict[Kind, list[FloatArray]] = {kind: [] for kind in kinds}
+    batches: list[list[FloatArray]] = [[] for _ in kinds]
     names = ("time", "event", "piston_energy_before")
     for k in range(orbits):
         orbit = client.trace_arrays(*names, rho=rho, delta=delta, seed=seed + k, events=events)
-        for kind, found in batches.items():
-            found += batches_of_gaps(orbit, kind)
-    measured = []
-    for kind, found in batches.items():
-        lengths = _LENGTHS / kind.exact
-        rate, error = rate_of_windows(found, lengths)
-        measured.append(kind._asdict() | {"t": lengths, "rate": rate, "standard_error": error})
-    return {"rates": stacked(measured)}
+        for kind, gaps in zip(kinds, batches):
+            gaps += batches_of_gaps(orbit, kind)
+    found = []
+    for kind, gaps in zip(kinds, batches):
+        lengths = _LENGTHS / kind["exact"]
+        rate, error = rate_of_windows(gaps, lengths)
+        found.append(kind | {"t": lengths, "rate": rate, "standard_error": error})
+    return {"rates": stacked(found)}
 
 
-def _kinds(client: Client, rho: float, delta: float, epsilon: Numbers) -> list[Kind]:
+def _kinds(client: Client, rho: float, delta: float, epsilon: Numbers) -> list[dict[str, Any]]:
+    """The kinds of events, each with energies of the piston from `lower` to `upper` (all, if the
+    kind is not "conditional") and its exact rate."""
     forms = client.analytic(rho, delta, epsilon)
     met, ball, piston = (
         1 / float(forms[f"tau_{name}"][0]) for name in ("ball_piston", "ball_wall", "piston_wall")
     )
-    kinds = [Kind("all", np.nan, 0, 0.5, met + ball + piston)]
-    kinds += [Kind("ball_piston", np.nan, 0, 0.5, met)]
+    kinds = [("all", np.nan, 0, 0.5, met + ball + piston), ("ball_piston", np.nan, 0, 0.5, met)]
     middle = forms["epsilon"][0]
     lower, upper = np.maximum(middle - _HALF_WIDTH, 0), np.minimum(middle + _HALF_WIDTH, 0.5)
     # In equilibrium u = sqrt(2 epsilon) is uniform. Therefore energies that are evenly spaced in u
@@ -88,22 +76,21 @@ def _kinds(client: Client, rho: float, delta: float, epsilon: Numbers) -> list[K
     u = (edges[:-1] + edges[1:]) / 2
     times = client.analytic(rho, delta, u.ravel() ** 2 / 2)["mean_free_time_conditional"][0]
     rate = (1 / times.reshape(u.shape)).mean(axis=0)
-    return kinds + [Kind("conditional", *numbers) for numbers in zip(middle, lower, upper, rate)]
+    kinds += [("conditional", *numbers) for numbers in zip(middle, lower, upper, rate)]
+    names = ("kind", "epsilon", "lower", "upper", "exact")
+    return [dict(zip(names, kind)) for kind in distinct(kinds)]  # an energy may be repeated
 
 
-def batches_of_gaps(orbit: Table, kind: Kind) -> list[FloatArray]:
+def batches_of_gaps(orbit: Table, kind: dict[str, Any]) -> list[FloatArray]:
     """The gaps between the events of a kind, in batches of equally many events of the orbit: a gap
     belongs to the batch of its end. The piston's energy is constant during a gap between
     ball-piston events. Therefore the gaps of one energy give the conditional probability."""
     batch = np.arange(len(orbit["time"])) // (len(orbit["time"]) // _BATCHES)
-    if kind.kind == "all":
-        chosen = np.ones(len(batch), dtype=bool)
-    else:
-        chosen = orbit["event"] == "ball_piston"
+    chosen = (orbit["event"] == "ball_piston") | (kind["kind"] == "all")
     gaps, batch = np.diff(orbit["time"][chosen], prepend=0.0), batch[chosen]
-    if kind.kind == "conditional":
+    if kind["kind"] == "conditional":
         energy = orbit["piston_energy_before"][chosen]
-        near = (energy >= kind.lower) & (energy < kind.upper)
+        near = (energy >= kind["lower"]) & (energy < kind["upper"])
         gaps, batch = gaps[near], batch[near]
     return [gaps[batch == k] for k in range(_BATCHES)]
 
@@ -131,7 +118,6 @@ def rate_of_windows(
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """The three panels."""
     data = tables["rates"]
     titles = ("all events", "ball-piston events", "ball-piston events, given ε")
     figure, panels = style.panels((1200, 500), 1, 3, titles, sharey=True)
@@ -147,9 +133,8 @@ def draw(tables: Tables) -> style.Figure:
     for k, series in enumerate(conditional):
         several.append((2, *series, k - (len(conditional) - 1) / 2))
     for panel, part, colour, label, shift in several:
-        t, ratio = part["t"] * part["exact"] * _ASIDE**shift, part["rate"] / part["exact"]
-        error = part["standard_error"] / part["exact"]
-        style.error_points(panels[panel], t, ratio, error, colour, label)
+        t, ratio = part["t"] * part["exact"], measured(part, "rate", unit=part["exact"])
+        style.error_points(panels[panel], t * _ASIDE**shift, *ratio, colour, label)
     panels[0].set_ylabel("P(t)/t over the exact rate")
     panels[2].legend(loc="lower left")
     return figure

@@ -7,13 +7,11 @@ histograms have twice as many bins, and the floor is twice as high.
 Time on two cores: quick 3 s, default 1 min, full 10 min.
 """
 
-from typing import Any
-
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import ENERGIES, RHO, Client, Numbers, answer, divergences
-from ballpiston.figures.parts.tables import Tables, distinct, rows
+from ballpiston.figures.parts.tables import Tables, distinct, measured, rows
 
-EFFORT: dict[str, dict[str, Any]] = {
+EFFORT = {
     "quick": {"delta": "0.1:0.325:5:log", "samples": 30_000},
     "full": {"samples": 1_000_000},
 }
@@ -31,8 +29,7 @@ def measure(
     samples: float = 100_000,
     seed: int = 0,
 ) -> Tables:
-    """Relative entropies from `samples` first hits each; --full has the paper's number. The noise
-    floor falls as 1/samples."""
+    """--full has the paper's number of samples. The noise floor falls as 1/samples."""
     question = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": _EXPONENTS}
     result = answer(client, "first-hit", samples=samples, seed=seed, **question)
     return {"relative-entropy": divergences(result)}
@@ -40,7 +37,6 @@ def measure(
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """One panel for each exponent."""
     data = tables["relative-entropy"]
     count = len(distinct(data["epsilon"]))
     figure, panels = style.panels((960, 840), 2, 2, sharex=True)
@@ -52,7 +48,7 @@ def draw(tables: Tables) -> style.Figure:
             beside = part["delta"] * _ASIDE ** (k - (count - 1) / 2)
             dashed = {"linestyle": (0, (2, 2)), "linewidth": 1}
             axes.plot(part["delta"], part["noise_floor"], color=colour, **dashed)
-            style.error_points(axes, beside, part["value"], part["standard_error"], colour, label)
+            style.error_points(axes, beside, *measured(part), colour, label)
         axes.set_title(f"n = {exponent}")
         style.plain_log_ticks(axes.xaxis, (0.0125, 0.025, 0.05, 0.1, 0.2, 0.3))
     panels[0, 0].set_xlim(0.88 * data["delta"].min(), 1.14 * data["delta"].max())

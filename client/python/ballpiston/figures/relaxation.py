@@ -16,7 +16,7 @@ from typing import Any
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer, in_mean_free_times
-from ballpiston.figures.parts.tables import Table, Tables, curves, distinct, rows
+from ballpiston.figures.parts.tables import Table, Tables, curves, distinct, measured, rows
 
 EFFORT = {"quick": {"samples": 20_000}, "full": {"samples": 2_000_000}}
 
@@ -49,7 +49,6 @@ def measure(
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """The four panels."""
     energy, correlation = tables["relaxation-energy"], tables["relaxation-autocorrelation"]
     deltas, starts = distinct(energy["delta"]), distinct(energy["epsilon"])
     lowest, highest = min(starts), max(starts)
@@ -71,15 +70,15 @@ def draw(tables: Tables) -> style.Figure:
     for axes in panels[1]:
         style.level(axes, 0)
     for part, colour, label in style.series(energy, "delta", "δ"):
-        dots = {"color": colour, "markersize": 3}
-        _draw_curve(panels[0, 0], part, label=label, **dots)
+        dots: dict[str, Any] = {"color": colour, "markersize": 3}
+        style.error_points(panels[0, 0], part["t"], *measured(part), label=label, **dots)
         _draw_excess(panels[1, 0], rows(part, epsilon=lowest), 0, **dots)
         if highest > lowest:
             triangles = dots | {"fmt": "^", "fillstyle": "none"}
             _draw_excess(panels[1, 0], rows(part, epsilon=highest), _FROM_HIGHEST, **triangles)
     for part, colour, _ in style.series(correlation, "delta", "δ"):
         dots = {"color": colour, "markersize": 3}
-        _draw_curve(panels[0, 1], part, **dots)
+        style.error_points(panels[0, 1], part["t"], *measured(part), **dots)
         _draw_excess(panels[1, 1], part, 0, **dots)
     panels[0, 0].set(ylim=(0, 0.5), ylabel="mean energy", xlim=(0, 1.02 * energy["t"].max()))
     panels[0, 1].set(ylim=(_LEAST, 1.5), ylabel="autocorrelation")
@@ -89,10 +88,6 @@ def draw(tables: Tables) -> style.Figure:
     return figure
 
 
-def _draw_curve(axes: Any, part: Table, **dots: Any) -> None:
-    style.error_points(axes, part["t"], part["value"], part["standard_error"], **dots)
-
-
 def _draw_excess(axes: Any, part: Table, shift: float, **dots: Any) -> None:
-    excess = part["value"] - part["limit"]
-    style.error_points(axes, part["t"] + shift, excess, part["standard_error"], **dots)
+    excess = measured(part, zero=part["limit"])
+    style.error_points(axes, part["t"] + shift, *excess, **dots)

@@ -20,12 +20,10 @@ counterclockwise. The invariant density is uniform in sin(phi), and proportional
 piston's stroke that is on the right of s. Time: default 25 s, full 60 s of a core.
 """
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from ballpiston.collisions import Records
 from ballpiston.figures.parts import cell_outline, style
 from ballpiston.figures.parts.asking import RHO, Client
 from ballpiston.figures.parts.tables import FloatArray, Table, Tables, pick, rows, stacked, table
@@ -36,7 +34,13 @@ EFFORT = {
 }
 
 _FINER = 16  # points in a bin along each axis, for exact means
+_FIELDS_OF_A_HIT = ("event", "ball_x", "ball_y", "ball_vx", "ball_vy")
 _FEWEST = 10.0  # expected collisions in a bin that counts for chi-squared
+_AXES = {
+    "alpha": ("direction of the ball α", "piston energy ε"),
+    "y": ("place y", "piston energy ε"),
+    "s": ("place along the edge s, in arcs", "sin φ"),
+}
 
 
 def measure(
@@ -61,18 +65,18 @@ def measure(
     return {"section": stacked(sections), "section-test": table(map(_chi_squared, sections))}
 
 
-_FIELDS_OF_A_HIT = ("event", "ball_x", "ball_y", "ball_vx", "ball_vy")
-
-
 def _of_collisions(
-    client: Client, rho: float, delta: float, hits: Records, bins: int
+    client: Client, rho: float, delta: float, hits: Any, bins: int
 ) -> tuple[Table, Table]:
     """In alpha and in y, and in the energy."""
     height = client.analytic(rho, delta)["eta"][0]
     symmetric, energies = np.linspace(-1, 1, bins + 1), np.linspace(0, 0.5, bins + 1)
     alpha, y, u = np.pi * symmetric, height / 2 * symmetric, np.sqrt(2 * energies)
-    velocities = density_of_velocities(_finer(alpha)[:, np.newaxis], _finer(u))
-    heights = density_of_heights(rho, delta, _finer(y))[:, np.newaxis]
+    p = _finer(u)
+    along = np.sqrt(1 - p**2) * np.cos(_finer(alpha)[:, np.newaxis])
+    velocities = (np.maximum(along - p, 0) + np.maximum(along + p, 0)) / (np.sqrt(2) * np.pi)  # f
+    depths = np.sqrt(rho**2 - (0.5 - np.abs(_finer(y))) ** 2) - np.sqrt(rho**2 - 0.25)  # s(y)
+    heights = np.maximum(delta - depths, 0)[:, np.newaxis]
     products = heights / (height * heights.mean()) * 2 * np.pi * velocities.mean(axis=0)
     angles, energy = np.arctan2(hits["ball_vy"], hits["ball_vx"]), hits["piston_energy"]
     return (
@@ -81,37 +85,17 @@ def _of_collisions(
     )
 
 
-def _of_walls(rho: float, delta: float, orbit: Mapping[str, Any], bins: int) -> Table:
+def _of_walls(rho: float, delta: float, orbit: Table, bins: int) -> Table:
     """In s and in sin(phi)."""
     x, y, vx, vy = (orbit[name][orbit["event"] == "ball_wall"] for name in _FIELDS_OF_A_HIT[1:])
     edges = np.linspace(0, 4, bins + 1), np.linspace(-1, 1, bins + 1)
-    strokes = stroke_on_the_right(rho, delta, _finer(edges[0]))
+    stroke = cell_outline.overlap_length(rho) + 2 * delta
+    places = cell_outline.outline(rho, _finer(edges[0]))[:, 0]
+    strokes = np.minimum(stroke, 0.5 + stroke / 2 - places)
     exact = np.outer(strokes / (4 * strokes.mean()), np.full(_FINER * bins, 0.5))
     s, normal_x, normal_y = cell_outline.place_on_outline(rho, x, y)
     sines = (normal_x * vy - normal_y * vx) / np.hypot(vx, vy)
     return _section("s", (s, sines), edges, edges, exact)
-
-
-def density_of_velocities(alpha: FloatArray, u: FloatArray) -> FloatArray:
-    """f(alpha, u)."""
-    along = np.sqrt(1 - u**2) * np.cos(alpha)
-    f: FloatArray = (np.maximum(along - u, 0) + np.maximum(along + u, 0)) / (np.sqrt(2) * np.pi)
-    return f
-
-
-def density_of_heights(rho: float, delta: float, y: FloatArray) -> FloatArray:
-    """delta - s(y), the density of y up to its norm."""
-    depth = np.sqrt(rho**2 - (0.5 - np.abs(y)) ** 2) - np.sqrt(rho**2 - 0.25)
-    density: FloatArray = np.maximum(delta - depth, 0)
-    return density
-
-
-def stroke_on_the_right(rho: float, delta: float, s: FloatArray) -> FloatArray:
-    """The length of the piston's stroke that is on the right of the place s of the cell's edge."""
-    stroke = cell_outline.overlap_length(rho) + 2 * delta
-    x = cell_outline.outline(rho, s)[:, 0]
-    length: FloatArray = np.minimum(stroke, 0.5 + stroke / 2 - x)
-    return length
 
 
 def _finer(edges: FloatArray) -> FloatArray:
@@ -140,16 +124,8 @@ def _chi_squared(section: Table) -> dict[str, Any]:
     return {"section": section["section"][0], "chi_squared": terms.sum(), "bins": len(terms)}
 
 
-_AXES = {
-    "alpha": ("direction of the ball α", "piston energy ε"),
-    "y": ("place y", "piston energy ε"),
-    "s": ("place along the edge s, in arcs", "sin φ"),
-}
-
-
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """Collisions and wall hits left, their exact density right."""
     titles = ("collisions", "exact density") * 2 + ("wall hits", "exact density")
     figure, panels = style.panels((960, 1180), 3, 2, titles, sharey="row", sharex="row")
     for line, (name, labels) in zip(panels, _AXES.items()):

@@ -19,11 +19,12 @@ from ballpiston.figures.parts import fits, style
 from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer, number_list
 from ballpiston.figures.parts.charge import combined
 from ballpiston.figures.parts.programs import table_of
-from ballpiston.figures.parts.tables import Table, Tables, curves, pick, rows, stacked, table
+from ballpiston.figures.parts.tables import Table, Tables, curves, groups, measured
+from ballpiston.figures.parts.tables import pick, rows, stacked, table
 from ballpiston.point import Point
 from ballpiston.result import Result
 
-EFFORT: dict[str, dict[str, Any]] = {
+EFFORT = {
     "quick": {"delta": "0.2", "cold": "0.1,0.01", "samples": 1e5, "blocks": 4},
     "full": {"samples": 3e6, "blocks": 20},
 }
@@ -72,10 +73,10 @@ def measure(
 
 def _idle(point: Point, blocks: int, seed: int) -> Table:
     """a of each piston, at several times s."""
-    at = point.parameters
-    gas = {name: at[name] for name in ("rho", "delta", "cold")}
+    case = {name: point.parameters[name] for name in ("delta", "cold")}
+    gas = {"rho": point.parameters["rho"]} | case
     found = table_of("slow_pistons", "idle", **gas, block=_BLOCK, blocks=blocks, seed=seed)
-    return stacked([{"delta": at["delta"], "cold": at["cold"]} | found])
+    return stacked([case | found])
 
 
 def _growth_and_law(point: Point, idle: Table) -> dict[str, float]:
@@ -108,14 +109,13 @@ def _growth(point: Point) -> dict[str, float]:
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """Both panels."""
     titles = ("Var(Q)/t over its first value", "growth over 2aJ²")
     figure, (left, right) = style.panels((960, 480), 1, 2, titles)
     found = tables["slow-pistons"]
     _draw_windows(left, tables["slow-pistons-windows"], found["delta"][0])
     style.level(right, 1)
     x = np.arange(len(found["ratio"]))
-    style.error_points(right, x, found["ratio"], found["ratio_error"], style.BLUE)
+    style.error_points(right, x, *measured(found, "ratio"), style.BLUE)
     labels = [f"{delta:g}\n{cold:g}" for delta, cold in zip(found["delta"], found["cold"])]
     if np.isnan(found["ratio"]).all():
         style.inside(right, 0.5, 0.6, _NOT_MEASURED, ha="center")
@@ -126,10 +126,10 @@ def draw(tables: Tables) -> style.Figure:
 
 
 def _draw_windows(axes: Any, windows: Table, delta: float) -> None:
-    windows = rows(windows, delta=delta) if windows else {"model": np.empty(0), "cold": np.empty(0)}
-    cases = sorted(set(zip(windows["model"], windows["cold"])))  # the jump process last
-    for k, (model, cold) in enumerate(cases):
-        shown = pick(rows(windows, model=model, cold=cold), _SHOWN)
+    cases = groups(rows(windows, delta=delta), "model", "cold") if windows else ()
+    in_order = sorted(cases, key=lambda case: case[0])  # the jump process last
+    for k, ((model, cold), part) in enumerate(in_order):
+        shown = pick(part, _SHOWN)
         if not len(shown["time"]):
             continue
         label = f"cold {cold:g}" + (", jump process" if model == "markov" else "")

@@ -7,12 +7,10 @@ billiard, and its limit for rare collisions, which finally decays at the smalles
 billiard's tail comes from slow pistons. By default it takes half a minute of two cores.
 """
 
-from typing import Any
-
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, Client, Numbers, answer
 from ballpiston.figures.parts.asking import in_mean_free_times, number_list
-from ballpiston.figures.parts.tables import Table, Tables, closed_forms, curves, estimates
+from ballpiston.figures.parts.tables import Table, Tables, closed_forms, curves, estimates, measured
 
 EFFORT = {"quick": {"samples": 20_000}, "full": {"samples": 20_000_000}}
 
@@ -28,8 +26,7 @@ def measure(
     samples: float = 500_000,
     seed: int = 0,
 ) -> Tables:
-    """The rates of the limit delta -> 0, the total rate f(epsilon), whose values are the continuum,
-    and the billiard's autocorrelations from `samples` orbits each."""
+    """`samples` are the orbits of each autocorrelation."""
     one_delta = number_list("delta", delta)[0]
     spectrum = answer(client, "energy-relaxation", rho=rho, delta=one_delta, model="spectrum")
     question = {"rho": rho, "delta": delta, "samples": samples, "seed": seed}
@@ -45,14 +42,20 @@ def measure(
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """Both panels."""
     figure, (upper, lower) = style.panels((960, 900), 2, 1, height_ratios=(3, 4))
     _draw_rates(upper, tables["spectrum"], tables["spectrum-rate"])
-    _draw_correlations(lower, tables["spectrum-billiard"])
+    several = style.series(tables["spectrum-billiard"], "delta", "δ")
+    line, *_ = several[0]
+    lower.semilogy(line["t"], line["limit"], color=style.BLACK, label="limit δ → 0")
+    for part, colour, label in several:
+        style.error_points(lower, part["t"], *measured(part), colour, label)
+    lower.set(ylim=(_LOWEST, 1.3), xlabel="t/τ$_{bp}$", ylabel="energy autocorrelation")
+    lower.set_xlim(0, line["t"].max())
+    lower.legend(loc="upper right")
     return figure
 
 
-def _draw_rates(axes: Any, spectrum: Table, total: Table) -> None:
+def _draw_rates(axes: style.Axes, spectrum: Table, total: Table) -> None:
     isolated = spectrum["value"][spectrum["name"] != "relaxation_time"]
     bottom, top = total["f"].min(), total["f"].max()
     axes.axvspan(bottom, top, color=style.REACH)
@@ -73,14 +76,3 @@ def _draw_rates(axes: Any, spectrum: Table, total: Table) -> None:
     per_tau = float(total["tau_ball_piston"][0] * (total["area_ball_piston"] / total["volume"])[0])
     above = axes.secondary_xaxis("top", functions=(lambda x: x * per_tau, lambda x: x / per_tau))
     above.set_xlabel("rate × τ$_{bp}$")
-
-
-def _draw_correlations(axes: Any, billiard: Table) -> None:
-    several = style.series(billiard, "delta", "δ")
-    line, *_ = several[0]
-    axes.semilogy(line["t"], line["limit"], color=style.BLACK, label="limit δ → 0")
-    for part, colour, label in several:
-        style.error_points(axes, part["t"], part["value"], part["standard_error"], colour, label)
-    axes.set(ylim=(_LOWEST, 1.3), xlabel="t/τ$_{bp}$", ylabel="energy autocorrelation")
-    axes.set_xlim(0, line["t"].max())
-    axes.legend(loc="upper right")

@@ -104,7 +104,6 @@ def expected_error(runs: Table, bias: float, error_of_bias: float) -> tuple[Floa
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """The panels that have data, and a line with the parameters."""
     data = tables["speed-accuracy"]
     has_gas = "heat-current" in data["quantity"]
     has_limit = "relaxation-time" in data["quantity"]
@@ -198,8 +197,7 @@ def floors_of_limit(runs: Table) -> Table:
     the largest delta first, and its standard error. It is the limit's bias, or an upper bound of
     it: the spectrum's deviation, which may be chance, plus _RESOLVED statistical errors."""
     spectra = rows(runs, method="spectrum")
-    first = np.unique(-spectra["delta"], return_index=True)[1]
-    spectra = pick(spectra, first)
+    spectra = pick(spectra, np.unique(-spectra["delta"], return_index=True)[1])
     error = spectra["statistical_error"]
     is_bias = spectra["value"] >= _RESOLVED * error
     value = spectra["value"] + np.where(is_bias, 0.0, _RESOLVED * error)
@@ -209,11 +207,9 @@ def floors_of_limit(runs: Table) -> Table:
 def _draw_relaxation(axes: Any, data: Table) -> None:
     runs = rows(data, quantity="relaxation-time")
     floors = floors_of_limit(runs)
-    resolved = floors["delta"][floors["is_bias"]]
-    chosen = resolved if len(resolved) else floors["delta"][:1]
-    for delta, colour in zip(chosen, _DELTA_COLOURS):
-        floor = pick(floors, list(floors["delta"]).index(delta))
-        bias = floor["value"]
+    chosen = pick(floors, floors["is_bias"] if floors["is_bias"].any() else slice(1))
+    columns = (chosen[name] for name in ("delta", "value", "error"))
+    for delta, bias, error_of_bias, colour in zip(*columns, _DELTA_COLOURS):
         axes.axhline(bias, color=colour, dashes=(3, 4), linewidth=1.2)
         spectrum = rows(runs, delta=delta, method="spectrum")["work_seconds"]
         label = f"spectrum, δ = {delta:g}"
@@ -221,7 +217,7 @@ def _draw_relaxation(axes: Any, data: Table) -> None:
         for method, name, line in (("markov", "limit", (0, (8, 4))), ("billiard", "billiard", "-")):
             part = rows(runs, delta=delta, method=method)
             part = pick(part, part["samples"] >= _FEWEST_ORBITS)
-            biased = (bias, floor["error"]) if method == "markov" else (0.0, 0.0)
+            biased = (bias, error_of_bias) if method == "markov" else (0.0, 0.0)
             errors = expected_error(part, *biased)
             label = f"{name}, δ = {delta:g}"
             dots: dict[str, Any] = {"markersize": 3, "linestyle": line}

@@ -18,10 +18,10 @@ from matplotlib.patches import Rectangle
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.programs import output_of
-from ballpiston.figures.parts.tables import Table, Tables, distinct, groups, rows, table
+from ballpiston.figures.parts.tables import Table, Tables, distinct, groups, table
 from ballpiston.progress import has_terminal
 
-EFFORT: dict[str, dict[str, Any]] = {"quick": {}, "full": {"all_starts": True}}
+EFFORT = {"quick": {}, "full": {"all_starts": True}}
 
 _KINDS = {
     "escapes",
@@ -62,51 +62,35 @@ def measure(*, all_starts: bool = False) -> Tables:
 def counts(report: str) -> Table:
     """From the tables "All counts" of the program's report, which is Markdown. Only the first row
     of a block of rows contains the case."""
-    found = []
-    section, case, number, titles = "", "", 0, [""]
-    for line in report.splitlines():
-        if start := re.match(r"<details>.*All counts: ([^<]*)<", line):
-            section = start[1]
-        elif line.startswith("</details>"):
-            section = ""
-        elif section and line.startswith("|") and not re.match(r"\|:?-", line):
-            cells = [cell.strip() for cell in line.strip("|").split("|")]
-            if cells[0] == "case":
-                titles = cells
-                continue
-            if cells[0]:
-                case, number = cells[0], number + 1
-            named = {title: cell.replace(",", "") for title, cell in zip(titles, cells)}
-            found.append(
-                {
-                    "section": section,
-                    "row": number,
-                    "case": case,
-                    "method": cells[1],
-                    "starts": int(named["starts"]),
-                    "failures": sum(
-                        int(named[kind]) for kind in _KINDS & named.keys() if named[kind] != "-"
-                    ),
-                }
-            )
+    found: list[dict[str, Any]] = []
+    case, number = "", 0
+    for section, text in re.findall(r"All counts: ([^<]*)<(.*?)</details>", report, re.DOTALL):
+        lines = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("|")]
+        titles, _, *block = ([cell.strip() for cell in line] for line in lines)
+        for line in block:
+            cells = dict(zip(titles, line))
+            if cells["case"]:
+                case, number = cells["case"], number + 1
+            row = {"section": section, "row": number, "case": case, "method": cells["method"]}
+            counted = {name: cells[name].replace(",", "") for name in cells if cells[name] != "-"}
+            row |= {"starts": int(counted["starts"])}
+            found.append(row | {"failures": sum(int(counted[k]) for k in _KINDS & counted.keys())})
     return table(found)
 
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """One cell for each situation and method."""
     data = tables["stability"]
-    sections, cases = distinct(data["section"]), distinct(data["row"])
-    lines = len(sections) + len(cases)
+    lines = len(distinct(data["section"])) + len(distinct(data["row"]))
     figure = style.picture(980, 200 + _LINE * lines)
     axes = figure.add_subplot()
     axes.set(xlim=(-0.5, len(_METHODS) - 0.5), ylim=(lines - 0.5, -0.5))
     axes.grid(False)
     line, ticks = 0, {}
-    for section in sections:
+    for (section,), block in groups(data, "section"):
         axes.text(-0.6, line, section, ha="right", va="center", fontsize=11, fontweight="bold")
         line += 1
-        for _, part in groups(rows(data, section=section), "row"):
+        for _, part in groups(block, "row"):
             ticks[line] = part["case"][0]
             _draw_cells(axes, part, line)
             line += 1
@@ -134,9 +118,6 @@ def _draw_cells(axes: Any, part: Table, line: int) -> None:
 
 def rate_text(rate: float) -> str:
     """Such as 0, 4e-4, 0.12 or 35."""
-    if rate == 0:
-        return "0"
-    if rate < 0.01:
-        digit, exponent = f"{rate:.0e}".split("e")
-        return f"{digit}e{int(exponent)}"
+    if 0 < rate < 0.01:
+        return f"{rate:.0e}".replace("e-0", "e-")
     return f"{rate:.2g}" if rate < 10 else f"{rate:.0f}"

@@ -12,15 +12,21 @@ import numpy as np
 
 from ballpiston.figures.parts import style
 from ballpiston.figures.parts.asking import RHO, Client, Shapes, answer, check_chains
-from ballpiston.figures.parts.tables import FloatArray, Table, Tables, curves, distinct, pick, rows
+from ballpiston.figures.parts.tables import FloatArray, Table, Tables, curves
+from ballpiston.figures.parts.tables import distinct, measured, pick, rows
 
-EFFORT: dict[str, dict[str, Any]] = {
+EFFORT = {
     "quick": {"cells": "2,4,8", "samples": 4000, "billiard_samples": 500},
     "full": {"samples": 500_000, "billiard_samples": 50_000},
 }
 
 _ASIDE = 0.007  # shift of the billiard's points to the right, so that all points are visible
 _DARK = "#606060"
+_BODIES: list[tuple[str, str, str, dict[str, Any]]] = [  # model, body, label, marker
+    (model, body, f"{body}, {name}", {"marker": marker, "fillstyle": fill, "markersize": 5})
+    for model, name, fill in (("markov", "δ → 0", "full"), ("billiard", "billiard", "none"))
+    for body, marker in (("balls", "o"), ("pistons", "s"))
+]
 
 
 def measure(
@@ -58,7 +64,6 @@ def linear_law(hot: float, cold: float, x: FloatArray) -> FloatArray:
 
 @style.styled
 def draw(tables: Tables) -> style.Figure:
-    """Points of the jump process are filled; balls are round, pistons square."""
     markov = tables["temperature-profile-markov"]
     hot, cold = float(markov["hot"][0]), float(markov["cold"][0])
     lengths = distinct(markov["cells"])
@@ -68,37 +73,19 @@ def draw(tables: Tables) -> style.Figure:
     handles = panels[0].plot(x, linear_law(hot, cold, x), **line)
     style.level(panels[1], 0)
     for k, length in enumerate(lengths):
-        handles.append(style.point_handle(f"N = {length}", style.colour(k)))
-        for model in ("markov", "billiard"):
+        colour = style.colour(k)
+        handles.append(style.point_handle(f"N = {length}", colour))
+        for model, body, _, marker in _BODIES:
             part = rows(tables[f"temperature-profile-{model}"], cells=length)
-            _draw_profile(panels, part, model, hot, cold, style.colour(k))
-    for model, name in (("markov", "δ → 0"), ("billiard", "billiard")):
-        for is_piston, body in ((False, "balls"), (True, "pistons")):
-            marker = _marker(model, is_piston)
-            handles.append(style.point_handle(f"{body}, {name}", _DARK, **marker))
+            has_whole_position = part["position"] == np.floor(part["position"])  # as pistons have
+            part = pick(part, has_whole_position == (body == "pistons"))
+            share = part["position"] / part["cells"].astype(float)
+            place = share + (_ASIDE if model == "billiard" else 0)
+            panels[0].plot(place, part["value"], linestyle="", color=colour, **marker)
+            excess = measured(part, zero=linear_law(hot, cold, share))
+            style.error_points(panels[1], place, *excess, colour, fmt="", linestyle="", **marker)
+    handles += [style.point_handle(label, _DARK, **marker) for *_, label, marker in _BODIES]
     panels[0].set_ylabel("temperature T")
     panels[1].set(xlim=(-0.02, 1.03), xlabel="x/N", ylabel="T minus the line")
     panels[0].legend(handles=handles)
     return figure
-
-
-def _draw_profile(
-    panels: Any, part: Table, model: str, hot: float, cold: float, colour: str
-) -> None:
-    for is_piston in (False, True):  # pistons have whole positions
-        body = pick(part, (part["position"] == np.floor(part["position"])) == is_piston)
-        share = body["position"] / body["cells"].astype(float)
-        place = share + (_ASIDE if model == "billiard" else 0)
-        marker = _marker(model, is_piston)
-        panels[0].plot(place, body["value"], linestyle="", color=colour, **marker)
-        excess = body["value"] - linear_law(hot, cold, share)
-        dots = {"fmt": marker.pop("marker"), **marker}
-        style.error_points(panels[1], place, excess, body["standard_error"], colour, **dots)
-
-
-def _marker(model: str, is_piston: bool) -> dict[str, Any]:
-    return {
-        "marker": "s" if is_piston else "o",
-        "fillstyle": "full" if model == "markov" else "none",
-        "markersize": 5,
-    }

@@ -44,16 +44,11 @@ def divergences(result: Result) -> Table:
     return found
 
 
-def mean_free_times(client: Client, rho: Numbers, delta: Numbers) -> dict[float, float]:
-    """tau_ball_piston of each delta."""
-    forms = client.analytic(rho, delta)
-    return dict(zip(forms["delta"].tolist(), forms["tau_ball_piston"].tolist()))
-
-
 def in_mean_free_times(client: Client, curves: Table) -> Table:
     """With the column `t`, the time in units of the mean free time of the row's delta."""
-    tau = mean_free_times(client, curves["rho"][0], np.unique(curves["delta"]))
-    return curves | {"t": curves["time"] / np.array([tau[delta] for delta in curves["delta"]])}
+    delta, row = np.unique(curves["delta"], return_inverse=True)
+    tau = client.analytic(curves["rho"][0], delta)["tau_ball_piston"]
+    return curves | {"t": curves["time"] / tau[row]}
 
 
 def check_chains(cells: Shapes) -> None:

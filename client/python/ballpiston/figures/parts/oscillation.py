@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ballpiston.figures.parts.fits import linear
-from ballpiston.figures.parts.tables import FloatArray, Table, groups, pick, table
+from ballpiston.figures.parts.tables import FloatArray, Table, distinct, groups, pick, table
 
 # x = delta^-power; 0 is the logarithm.
 _MODELS = {"delta": -1.0, "log(delta)": 0.0, "1/delta": 1.0}
@@ -34,37 +34,24 @@ _COLUMNS = (
 def fits(points: Table, synthetic: int) -> Table:
     """Every model beside the data of every series that has ten points above the noise.
 
-    false_alarm  probability that the scan finds as large a relative gain in chi^2 in data of the
-                 plain power law
-    p_value      probability that this model, if it is true, fits worse than the best model by as
-                 much as here
-    transform    the p for which x = delta^-p fits best (p = 0 is the logarithm), with the range of
-                 all p whose chi^2 is at most 4 larger
-
-    Both probabilities are shares of `synthetic` data sets with a fixed seed: 0 means less than
-    1/synthetic. In rows with the exponent NaN, chi^2 is summed over the exponents, each with its
-    own frequency and amplitude."""
+    docs/research/markov-test.md explains `false_alarm` and `p_value`. Both are shares of
+    `synthetic` data sets with a fixed seed: 0 means less than 1/synthetic. `transform` is the p for
+    which x = delta^-p fits best. In rows with the exponent NaN, chi^2 is summed over the exponents,
+    each with its own frequency and amplitude."""
     found: list[dict[str, Any]] = []
-    sums: list[dict[str, Any]] = []
     random = np.random.default_rng(_SEED)
-    for (epsilon,), part in groups(points, "epsilon"):
-        of_energy, of_powers = [], []
-        for (exponent,), series in groups(part, "exponent"):
-            above = series["excess"] > 3 * series["standard_error"]
-            if exponent == 1 or above.sum() < _FEWEST_POINTS:
-                continue
-            fitted, powers = _fits_of_series(pick(series, above), random, synthetic)
-            of_energy += [{"epsilon": epsilon, "exponent": exponent} | row for row in fitted]
-            of_powers.append(powers)
-        found += of_energy
-        sums += _sums(of_energy, np.sum(of_powers, axis=0)) if of_energy else []
-    return table(found + sums, _COLUMNS)
+    for (epsilon, exponent), series in groups(points, "epsilon", "exponent"):
+        above = series["excess"] > 3 * series["standard_error"]
+        if exponent != 1 and above.sum() >= _FEWEST_POINTS:
+            fitted = _fits_of_series(pick(series, above), random, synthetic)
+            found += [{"epsilon": epsilon, "exponent": exponent} | row for row in fitted]
+    return table(found + _sums(found), _COLUMNS)
 
 
 def _fits_of_series(
     series: Table, random: np.random.Generator, synthetic: int
-) -> tuple[list[dict[str, Any]], FloatArray]:
-    """One row for the power law and for each oscillating model; chi^2 of all powers."""
+) -> list[dict[str, Any]]:
+    """One row for the power law and for each oscillating model. `powers`: chi^2 of all powers."""
     x, y = np.log(series["delta"]), np.log(series["excess"])
     error = series["standard_error"] / series["excess"]
     scans = {name: _terms(x, power) for name, power in _MODELS.items()}
@@ -75,7 +62,9 @@ def _fits_of_series(
         """chi^2 of each model at its best frequency."""
         return {n: _chi_squared(terms, error, data).min(axis=-1) for n, (terms, _) in scans.items()}
 
+    powers = np.array([_chi_squared(_terms(x, p)[0], error, y / error).min() for p in _POWERS])
     head = {"points": len(x), "smallest_delta": series["delta"].min(), "model_error": model_error}
+    head |= {"powers": powers}
     power_law = next(iter(scans.values()))[0][:1, :, :2]
     plain = linear(power_law[0], y, error)
     law = {"model": "power law", "degrees_of_freedom": plain.freedom}
@@ -83,7 +72,6 @@ def _fits_of_series(
     noise = random.standard_normal((synthetic, len(x)))  # a fit removes the power law
     chi_of_noise, best_of_noise = _chi_squared(power_law, error, noise)[:, 0], best_of(noise)
     chi = best_of(y / error)
-    powers = np.array([_chi_squared(_terms(x, p)[0], error, y / error).min() for p in _POWERS])
     for name, (terms, omegas) in scans.items():
         best = int(np.argmin(_chi_squared(terms, error, y / error)))
         fit = linear(terms[best], y, error)
@@ -98,7 +86,7 @@ def _fits_of_series(
         row |= {"false_alarm": is_alarm.mean()}
         row |= {"p_value": np.mean(worse >= chi[name] - min(chi.values()))}
         found.append(head | row | best_transform(powers))
-    return found, powers
+    return found
 
 
 def _terms(log_delta: FloatArray, power: float) -> tuple[FloatArray, FloatArray]:
@@ -144,13 +132,14 @@ def best_transform(chi_of_powers: FloatArray) -> dict[str, float]:
     return {"transform": best, "transform_low": near.min(), "transform_high": near.max()}
 
 
-def _sums(fitted: list[dict[str, Any]], powers: FloatArray) -> list[dict[str, Any]]:
-    """Of each model, over the exponents of one energy."""
+def _sums(fitted: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Of each model, over the exponents of each energy."""
     found = []
-    for model in ("power law", *_MODELS):
-        same = [row for row in fitted if row["model"] == model]
+    for epsilon, model in distinct((row["epsilon"], row["model"]) for row in fitted):
+        same = [row for row in fitted if (row["epsilon"], row["model"]) == (epsilon, model)]
         names = {"points", "chi_squared", "degrees_of_freedom", "gain"} & same[0].keys()
         total = {name: sum(row[name] for row in same) for name in names}
+        powers = np.sum([row["powers"] for row in same], axis=0)
         best = {} if model == "power law" else best_transform(powers)
-        found.append({"epsilon": same[0]["epsilon"], "model": model} | total | best)
+        found.append({"epsilon": epsilon, "model": model} | total | best)
     return found

@@ -16,33 +16,25 @@ from ballpiston.figures.parts.tables import Table
 from ballpiston.private_server import find_program
 
 
-class ProgramFailed(Error):
-    """A program of a figure is missing or failed."""
-
-
-class InvalidUse(ProgramFailed, InvalidArgument):
-    """A program rejects its arguments, and has said why."""
-
-
 def output_of(program: str, *arguments: str, quiet: bool = False) -> str:
     """What the program prints. Its messages go to standard error; with `quiet` only if it fails.
 
     Raises:
-        ProgramFailed: it cannot be started or fails. InvalidUse if it rejects its arguments.
+        Error: it cannot be started or fails. InvalidArgument if it rejects its arguments.
     """
     beside = Path(find_program()).resolve().parent
     hidden = beside.parent / "libexec" / "ballpiston"  # programs that only figures use
     folders = [str(beside), str(hidden), os.environ.get("PATH", "")]
     path = shutil.which(program, path=os.pathsep.join(folders))
     if path is None:
-        raise ProgramFailed(f"{program}: not found beside the program ballpiston, nor in PATH")
+        raise Error(f"{program}: not found beside the program ballpiston, nor in PATH")
     messages = subprocess.PIPE if quiet else None
     ended = subprocess.run(
         [path, *arguments], stdout=subprocess.PIPE, stderr=messages, text=True, check=False
     )
     if ended.returncode != 0:
         sys.stderr.write(ended.stderr or "")
-        kind = InvalidUse if ended.returncode == 2 else ProgramFailed
+        kind = InvalidArgument if ended.returncode == 2 else Error
         raise kind(f"{program} failed with exit status {ended.returncode}")
     return ended.stdout
 

@@ -10,14 +10,14 @@ from typing import Any
 import matplotlib
 import matplotlib.style
 import numpy as np
-from matplotlib.axes import Axes
+from matplotlib.axes import Axes as Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize, to_hex
 from matplotlib.figure import Figure as Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from ballpiston.figures.parts.tables import Table, Tables, distinct, rows
+from ballpiston.figures.parts.tables import Table, Tables, groups
 from ballpiston.whole_file import write_atomically
 
 BLUE, ORANGE, GREEN, PINK = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
@@ -50,7 +50,7 @@ def save(figure: Figure, path: Path) -> None:
     """As SVG or PNG, by the end of the path. The same picture gives the same file. A full disk
     leaves the old file."""
     ending = path.suffix.removeprefix(".")
-    buffer = io.BytesIO()
+    buffer = io.BytesIO()  # a pipe cannot seek, as PNG needs
     with matplotlib.style.context(_SHEET, after_reset=True):
         metadata = {"Date": None} if ending == "svg" else {}
         figure.savefig(buffer, format=ending, metadata=metadata)
@@ -67,10 +67,8 @@ Series = tuple[Table, str, str]  # the rows of one value, with the value's colou
 
 def series(whole: Table, name: str, symbol: str) -> list[Series]:
     """One for each value of the column `name`, in the order of their first appearance."""
-    return [
-        (rows(whole, **{name: x}), colour(k), f"{symbol} = {x:g}")
-        for k, x in enumerate(distinct(whole[name]))
-    ]
+    in_order = enumerate(groups(whole, name))
+    return [(part, colour(k), f"{symbol} = {x:g}") for k, ((x,), part) in in_order]
 
 
 def picture(width: float, height: float) -> Figure:
@@ -91,10 +89,15 @@ def panels(
 
 def bare_axes(figure: Figure, place: Any = 111) -> Any:
     """Axes without a frame, for drawings. Lengths of x and y are equal."""
-    axes = figure.add_subplot(place)
+    axes = figure.add_subplot(place, aspect="equal")
     axes.set_axis_off()
-    axes.set_aspect("equal")
     return axes
+
+
+def arrows(axes: Any, bodies: Any, unit: float, **style: Any) -> None:
+    """The velocities of bodies at their places, where `unit` is that of an arrow of length 1."""
+    x, y, vx, vy = (bodies[name] for name in ("x", "y", "vx", "vy"))
+    axes.quiver(x, y, vx, vy, angles="xy", scale_units="xy", scale=unit, **style)
 
 
 def axis_arrows(axes: Any, origin: Sequence[float], length: float, names: Sequence[str]) -> None:

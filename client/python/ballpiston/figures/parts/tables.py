@@ -44,6 +44,15 @@ def rows(whole: Table, **wanted: Any) -> Table:
     return pick(whole, mask)
 
 
+def measured(
+    part: Mapping[str, Any], name: str = "value", zero: Any = 0.0, unit: Any = 1.0
+) -> tuple[FloatArray, FloatArray]:
+    """A column less `zero`, in this unit, and its errors: the column NAME_error, if there is one,
+    else `standard_error`."""
+    error = part.get(f"{name}_error", part.get("standard_error"))
+    return (part[name] - zero) / unit, error / unit
+
+
 def distinct(column: Iterable[Any]) -> list[Any]:
     """The values, in the order of their first appearance."""
     return list(dict.fromkeys(column))
