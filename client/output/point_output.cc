@@ -1,19 +1,121 @@
+#include "client/output/point_output.h"
+
 #include <cmath>
+#include <map>
+#include <optional>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "client/output/answers.h"
-#include "client/output/field_text.h"
 #include "client/output/json.h"
-#include "client/output/model_reasons.h"
 #include "client/output/number_text.h"
 #include "client/output/spelling.h"
-#include "client/output/text_table.h"
+#include "client/output/table.h"
 
 namespace ballpiston::client {
 namespace {
+
+// The model's name on the command line; "none" if no model can be used.
+std::string ModelName(v1::EnsembleSpec::Model model) {
+  return model == v1::EnsembleSpec::MODEL_UNSPECIFIED ? "none" : Spelling(model);
+}
+
+// The reasons for the models, each once, even if several points share it. In the order of their
+// first points. `points` are PointResults or PointPlans; one without a reason
+// has the model that the user chose.
+template <typename Points>
+void PrintModelReasons(const Points& points, std::ostream& out) {
+  std::map<std::pair<std::string, std::string>, int> counts;  // of points, by model and reason
+  for (const auto& point : points) {
+    if (!point.reason().empty()) ++counts[{ModelName(point.model()), point.reason()}];
+  }
+  const bool is_only = counts.size() == 1;
+  for (const auto& point : points) {
+    const auto first = counts.extract({ModelName(point.model()), point.reason()});
+    if (first.empty()) continue;  // printed already, or no reason
+    out << first.key().first;
+    if (!is_only) {
+      const int others = first.mapped() - 1;
+      out << " (" << ParameterText(point.parameters())
+          << (others > 0 ? " and " + Counted(others, "more point") : "") << ")";
+    }
+    out << ": " << point.reason() << '\n';
+  }
+}
+
+// ---- results ----
+
+const Cells kPointFields = {"model", "samples"};
+const Cells kEstimateFields = {"name",    "value",       "standard_error", "exact",
+                               "z_score", "model_error", "noise_floor",    "limit"};
+
+// A row for each estimate.
+void PrintCsv(const v1::EnsembleSpec& spec, const v1::PointResult& point, std::ostream& out) {
+  const Cells first = Joined({FieldTexts(point.parameters(), ParametersInCsv(spec.grid())),
+                              FieldTexts(point, kPointFields)});
+  for (const v1::Estimate& estimate : point.estimates()) {
+    out << CsvRow(Joined({first, FieldTexts(estimate, kEstimateFields)}));
+  }
+}
+
+// Columns that a table has only if at least one estimate has the value.
+const Cells kExtraColumns = {"model_error", "noise_floor", "limit"};
+
+// An error is printed with two digits; another value ends at the estimate's decimal place.
+std::string ExtraCell(const std::string& column, const v1::Estimate& row) {
+  const std::optional<double> x = NumberIn(row, column);
+  if (!x) return "";
+  if (column == "model_error") return TwoDigits(*x);
+  return Measured(row.value(), NumberIn(row, "standard_error"), x).exact;
+}
+
+Cells EstimateCells(const v1::Estimate& row) {
+  const MeasuredText text =
+      Measured(row.value(), NumberIn(row, "standard_error"), NumberIn(row, "exact"));
+  const bool has_z = row.has_z_score() && !text.error.empty();
+  const std::string z = has_z ? absl::StrFormat("%+.2f", row.z_score()) : "";
+  Cells cells = {row.name(), text.value, text.error, text.exact, z};
+  for (const std::string& column : kExtraColumns) cells.push_back(ExtraCell(column, row));
+  return cells;
+}
+
+std::string Heading(const v1::EnsembleJob& job, const std::set<std::string>& models) {
+  return absl::StrCat(
+      Spelling(job.spec().experiment()), ", ",
+      models.empty() ? "no finished points" : absl::StrCat("model ", absl::StrJoin(models, ", ")),
+      job.spec().precision() == v1::EnsembleSpec::SINGLE ? ", single precision" : "", ", seed ",
+      job.spec().seed(), ", engine ", job.engine_version(), "  (", job.name(), ", ",
+      Spelling(job.state()), ", ", job.progress().points_done(), " of ", job.progress().points(),
+      " points)");
+}
+
+void PrintTable(const v1::EnsembleJob& job, const std::vector<v1::PointResult>& points,
+                std::ostream& out) {
+  std::set<std::string> models, optional = OptionalParameters();
+  for (const v1::PointResult& point : points) models.insert(Spelling(point.model()));
+  optional.insert(kExtraColumns.begin(), kExtraColumns.end());
+  optional.insert("model");
+  TextTable table(Joined({ParametersInTable(),
+                          {"model", "samples", "estimate", "value", "error", "exact", "z"},
+                          kExtraColumns}),
+                  {"model", "estimate"}, optional);
+  for (const v1::PointResult& point : points) {
+    const Cells cells =
+        Joined({FieldTexts(point.parameters(), ParametersInTable(), &TenDigits),
+                {models.size() > 1 ? Spelling(point.model()) : "", ExactText(point.samples())}});
+    for (const auto& row : point.estimates()) table.AddRow(Joined({cells, EstimateCells(row)}));
+    for (const std::string& remark : point.remarks()) table.AddLine("remark: " + remark);
+  }
+  out << Heading(job, models) << '\n';
+  if (!points.empty()) table.Print(out);
+  PrintModelReasons(points, out);
+}
+
+// ---- plans ----
 
 bool IsChosen(const v1::PointPlan& point, const v1::ModelPlan& model) {
   return point.model() == model.model() && model.model() != v1::EnsembleSpec::MODEL_UNSPECIFIED;
@@ -143,6 +245,42 @@ void PrintTable(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse&
 }
 
 }  // namespace
+
+void ResultWriter::Begin(const v1::EnsembleJob& job) {
+  job_ = job;
+  if (format_ == Format::kJson) {
+    out_ << "{\"client_version\": \"" << BALLPISTON_VERSION << "\",\n\"job\": " << Json(job)
+         << ",\n\"points\": [";
+  }
+  if (format_ != Format::kCsv) return;
+  if (is_file_) {
+    out_ << "# " << job.name() << ", engine " << job.engine_version() << ", client "
+         << BALLPISTON_VERSION << "\n# " << Json(job.spec()) << '\n';
+  }
+  out_ << CsvRow(Joined({ParametersInCsv(job.spec().grid()), kPointFields, kEstimateFields}));
+}
+
+void ResultWriter::Add(const v1::PointResult& point) {
+  switch (format_) {
+    case Format::kTable:
+      points_.push_back(point);
+      break;
+    case Format::kJson:
+      out_ << separator_ << Json(point);
+      separator_ = ",\n";
+      break;
+    case Format::kJsonl:
+      out_ << Json(point) << '\n';
+      break;
+    case Format::kCsv:
+      PrintCsv(job_.spec(), point, out_);
+  }
+}
+
+void ResultWriter::End() {
+  if (format_ == Format::kTable) PrintTable(job_, points_, out_);
+  if (format_ == Format::kJson) out_ << "\n]}\n";
+}
 
 void PrintPlan(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan, Format format,
                std::ostream& out) {
