@@ -7,7 +7,6 @@
 #pragma once
 
 #include <functional>
-#include <string>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
@@ -25,11 +24,6 @@ absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options);
 // The content of the file of --spec, which `name` names in messages. INVALID_ARGUMENT, with the
 // parser's message, if the text is not JSON, or has a field that a specification does not have.
 absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, absl::string_view json);
-
-// Reads a table of points in CSV into the lists of the grid, and names them in its table: a header
-// with the names of parameters, in any order, then a row for each point. Cells may have quotes;
-// empty lines do not count. INVALID_ARGUMENT names the file, the line and the column of an error.
-absl::Status ParsePoints(const std::string& name, absl::string_view csv, v1::Grid& grid);
 
 using VerbOfQuestion = std::function<VerbResult(const Connection&, const Options& asked)>;
 

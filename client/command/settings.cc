@@ -164,8 +164,9 @@ SortedWords SortWords(const Verb& verb, const std::vector<std::string>& words) {
       const auto [given, is_first] = sorted.flags.try_emplace(flag, *value);
       if (is_first) continue;
       absl::StrAppend(&given->second, ",", *value);
-      const bool is_wrong = !flag->value.is_repeatable && sorted.repeated_flag == nullptr;
-      if (is_wrong) sorted.repeated_flag = flag;
+      if (!flag->value.is_repeatable && sorted.repeated_flag == nullptr) {
+        sorted.repeated_flag = flag;
+      }
     } else if (sorted.flag_without_value == nullptr) {
       sorted.flag_without_value = flag;
     }

@@ -24,9 +24,15 @@ std::string ModelName(v1::EnsembleSpec::Model model) {
   return model == v1::EnsembleSpec::MODEL_UNSPECIFIED ? "none" : Spelling(model);
 }
 
-// The reasons for the models, each once, even if several points share it. In the order of their
-// first points. `points` are PointResults or PointPlans; one without a reason
-// has the model that the user chose.
+// Prints, below a table, the reason why each model was chosen. Each reason is printed once, even if
+// several points share it. The reasons are in the order of their first points.
+//
+//   closed-form: exact                                          one reason for all points
+//
+//   markov (rho 0.53, delta 0.0125): off by 1.2e-03             several reasons: each with its
+//   billiard (rho 0.53, delta 0.1 and 2 more points): ...       first point
+//
+// `points` are PointResults or PointPlans; one without a reason has the model that the user chose.
 template <typename Points>
 void PrintModelReasons(const Points& points, std::ostream& out) {
   std::map<std::pair<std::string, std::string>, int> counts;  // of points, by model and reason
@@ -54,9 +60,9 @@ const Cells kEstimateFields = {"name",    "value",       "standard_error", "exac
                                "z_score", "model_error", "noise_floor",    "limit"};
 
 // A row for each estimate.
-void PrintCsv(const v1::EnsembleSpec& spec, const v1::PointResult& point, std::ostream& out) {
-  const Cells first = Joined({FieldTexts(point.parameters(), ParametersInCsv(spec.grid())),
-                              FieldTexts(point, kPointFields)});
+void PrintCsvRows(const Cells& parameters, const v1::PointResult& point, std::ostream& out) {
+  const Cells first =
+      Joined({FieldTexts(point.parameters(), parameters), FieldTexts(point, kPointFields)});
   for (const v1::Estimate& estimate : point.estimates()) {
     out << CsvRow(Joined({first, FieldTexts(estimate, kEstimateFields)}));
   }
@@ -83,7 +89,7 @@ Cells EstimateCells(const v1::Estimate& row) {
   return cells;
 }
 
-std::string Heading(const v1::EnsembleJob& job, const std::set<std::string>& models) {
+std::string ResultHeading(const v1::EnsembleJob& job, const std::set<std::string>& models) {
   return absl::StrCat(
       Spelling(job.spec().experiment()), ", ",
       models.empty() ? "no finished points" : absl::StrCat("model ", absl::StrJoin(models, ", ")),
@@ -93,8 +99,8 @@ std::string Heading(const v1::EnsembleJob& job, const std::set<std::string>& mod
       " points)");
 }
 
-void PrintTable(const v1::EnsembleJob& job, const std::vector<v1::PointResult>& points,
-                std::ostream& out) {
+void PrintResultTable(const v1::EnsembleJob& job, const std::vector<v1::PointResult>& points,
+                      std::ostream& out) {
   std::set<std::string> models, optional = OptionalParameters();
   for (const v1::PointResult& point : points) models.insert(Spelling(point.model()));
   optional.insert(kExtraColumns.begin(), kExtraColumns.end());
@@ -110,7 +116,7 @@ void PrintTable(const v1::EnsembleJob& job, const std::vector<v1::PointResult>& 
     for (const auto& row : point.estimates()) table.AddRow(Joined({cells, EstimateCells(row)}));
     for (const std::string& remark : point.remarks()) table.AddLine("remark: " + remark);
   }
-  out << Heading(job, models) << '\n';
+  out << ResultHeading(job, models) << '\n';
   if (!points.empty()) table.Print(out);
   PrintModelReasons(points, out);
 }
@@ -127,8 +133,8 @@ std::string WholeReason(const v1::PointPlan& point, const v1::ModelPlan& model) 
   return absl::StrCat(point.reason(), "; ", model.reason());
 }
 
-void PrintCsv(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan,
-              std::ostream& out) {
+void PrintPlanCsv(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan,
+                  std::ostream& out) {
   const Cells parameters = ParametersInCsv(spec.grid());
   const Cells fields = {"answers", "samples", "work", "relative_statistical_error",
                         "relative_model_error"};
@@ -164,7 +170,7 @@ std::string TargetText(const v1::Target& target) {
   return absl::StrJoin(texts, ", ");
 }
 
-std::string Heading(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan) {
+std::string PlanHeading(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan) {
   Cells texts = {Spelling(spec.experiment()), TargetText(spec.target()),
                  Counted(plan.point_count(), "point")};
   if (texts[1].empty()) texts.erase(texts.begin() + 1);
@@ -233,9 +239,9 @@ void PrintTotal(const v1::PlanEnsembleJobResponse& plan, std::ostream& out) {
       << absl::StrFormat(", up to %.0f MB of memory\n", std::ceil(plan.memory() / 1e6));
 }
 
-void PrintTable(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan,
-                std::ostream& out) {
-  out << Heading(spec, plan) << '\n';
+void PrintPlanTable(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan,
+                    std::ostream& out) {
+  out << PlanHeading(spec, plan) << '\n';
   if (plan.points_size() <= kMostLadders) {
     for (const v1::PointPlan& point : plan.points()) PrintLadder(point, out);
   } else {
@@ -257,7 +263,8 @@ void ResultWriter::Begin(const v1::EnsembleJob& job) {
     out_ << "# " << job.name() << ", engine " << job.engine_version() << ", client "
          << BALLPISTON_VERSION << "\n# " << Json(job.spec()) << '\n';
   }
-  out_ << CsvRow(Joined({ParametersInCsv(job.spec().grid()), kPointFields, kEstimateFields}));
+  parameters_ = ParametersInCsv(job.spec().grid());
+  out_ << CsvRow(Joined({parameters_, kPointFields, kEstimateFields}));
 }
 
 void ResultWriter::Add(const v1::PointResult& point) {
@@ -273,19 +280,19 @@ void ResultWriter::Add(const v1::PointResult& point) {
       out_ << Json(point) << '\n';
       break;
     case Format::kCsv:
-      PrintCsv(job_.spec(), point, out_);
+      PrintCsvRows(parameters_, point, out_);
   }
 }
 
 void ResultWriter::End() {
-  if (format_ == Format::kTable) PrintTable(job_, points_, out_);
+  if (format_ == Format::kTable) PrintResultTable(job_, points_, out_);
   if (format_ == Format::kJson) out_ << "\n]}\n";
 }
 
 void PrintPlan(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan, Format format,
                std::ostream& out) {
-  if (format == Format::kTable) return PrintTable(spec, plan, out);
-  if (format == Format::kCsv) return PrintCsv(spec, plan, out);
+  if (format == Format::kTable) return PrintPlanTable(spec, plan, out);
+  if (format == Format::kCsv) return PrintPlanCsv(spec, plan, out);
   if (format == Format::kJsonl) return PrintJsonLines(plan.points(), out);
   out << Json(plan) << '\n';
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <ostream>
+#include <string>
 #include <vector>
 
 #include "ballpiston/v1/ensemble.pb.h"
@@ -52,6 +53,7 @@ class ResultWriter {
   std::ostream& out_;
   const bool is_file_;
   v1::EnsembleJob job_;
+  std::vector<std::string> parameters_;  // the first columns of CSV
   std::vector<v1::PointResult> points_;  // of a table: the last one may widen its columns
   const char* separator_ = "\n";         // of points in the JSON document
 };

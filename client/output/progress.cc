@@ -16,6 +16,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "client/output/json.h"
+#include "client/output/number_text.h"
 #include "client/output/spelling.h"
 #include "client/output/table.h"
 

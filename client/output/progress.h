@@ -1,12 +1,4 @@
-// Shows the progress of a watched job on standard error.
-//
-//   bar   one line, redrawn: bar, points, samples per second, time left, and the current
-//         estimate of the point that changed last
-//   json  one file.v1.WatchProgress per line, with the points that changed: the unfinished
-//         points first, then the finished points; within each group the newest first
-//   none  only notes
-//
-// Thread-safe: the thread that handles Ctrl-C calls Farewell while another thread redraws the bar.
+// The progress of a watched job: its speed, its line, its report on standard error.
 #pragma once
 
 #include <cstddef>
@@ -62,6 +54,15 @@ enum class ProgressStyle { kAuto, kBar, kJson, kNone };
 // Standard error is a terminal that has colours and can draw over a line.
 bool HasTerminal();
 
+// Shows the progress of a watched job on standard error.
+//
+//   bar   one line, redrawn: bar, points, samples per second, time left, and the current
+//         estimate of the point that changed last
+//   json  one file.v1.WatchProgress per line, with the points that changed: the unfinished
+//         points first, then the finished points; within each group the newest first
+//   none  only notes
+//
+// Thread-safe: the thread that handles Ctrl-C calls Farewell while another thread redraws the bar.
 class ProgressReporter {
  public:
   // kAuto is kBar if HasTerminal(), else kNone. `name` is the job's name. `err` must

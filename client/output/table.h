@@ -62,6 +62,8 @@ Cells ParametersInCsv(const v1::Grid& grid);
 Cells ParametersInTable();
 std::set<std::string> OptionalParameters();
 
+// ---- aligned text ----
+
 // Aligned columns of text. The first row is the header. Columns of numbers are aligned right.
 // Control characters are escaped, because texts of a server may change the terminal.
 class TextTable {

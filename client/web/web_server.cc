@@ -23,6 +23,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -148,7 +149,7 @@ class WebServer {
     server_.Post("/(.+)", [this](const auto& in, auto& out) { PassOn(in, out); });
   }
 
-  // Whether the port, by default a free one, could be opened.
+  // Opens the port; 0: a free one. Returns false if it is in use or not permitted.
   bool Bind(int port) {
     if (port == 0) {
       port = server_.bind_to_any_port(kLoopback);
