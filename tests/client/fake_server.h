@@ -167,10 +167,13 @@ class FakeServer final : v1::EnsembleService::Service,
     return grpc::Status(grpc::StatusCode::FAILED_PRECONDITION, "has ended already");
   }
 
-  grpc::Status UpdateEnsembleJob(Context*, const v1::UpdateEnsembleJobRequest* request,
+  grpc::Status UpdateEnsembleJob(Context* context, const v1::UpdateEnsembleJobRequest* request,
                                  v1::EnsembleJob* job) override {
     const auto lock = Record(*request);
-    if (unavailable_attempts-- > 0) return kNotYet;
+    if (unavailable_attempts-- > 0) {
+      context->AddTrailingMetadata("grpc-retry-pushback-ms", "400");
+      return kNotYet;
+    }
     const grpc::Status found = FindWithResults(request->job().name(), job);
     job->set_pinned(request->job().pinned());
     return found;

@@ -1,6 +1,6 @@
 // Lists of numbers and of shapes, and tables of points: what is read, and the errors.
 #include "client/command/number_list.h"
-#include "client/command/question.h"
+#include "client/command/points_file.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {
@@ -96,7 +96,7 @@ TEST(ShapeList, RejectsOtherTextsWithAReason) {
   }
 }
 
-// ---- question.h ----
+// ---- points_file.h ----
 
 // With a byte order mark, the quotes of R's write.csv, and empty lines.
 TEST(PointsFile, FillsTheListsThatItsHeaderNames) {

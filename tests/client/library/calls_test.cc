@@ -56,6 +56,15 @@ TEST_F(ClientTest, ListStopsAtItsLimit) {
   EXPECT_THAT(server_.Asked<v1::ListEnsembleJobsRequest>(), SizeIs(2));
 }
 
+// Without the server's wish the three attempts would take 0.4 s at most.
+TEST_F(ClientTest, APinIsRepeatedAfterThePausesThatTheServerAsksFor) {
+  server_.unavailable_attempts = 2;
+  const Client client = StartServer();
+  const absl::Time begin = absl::Now();
+  EXPECT_OK(client.Pin(kJobName, true));
+  EXPECT_GE(absl::Now() - begin, absl::Milliseconds(790));
+}
+
 TEST_F(ClientTest, ACallbackEndsATrace) {
   server_.orbit.resize(100'000);
   int messages = 0;

@@ -45,7 +45,8 @@ class JobWatch : public ::testing::Test {
       pauses_.push_back(absl::ToDoubleMilliseconds(pause));
       after_disconnect_();
     };
-    return Client(server_.Channel()).Watch(kJobName, callbacks, options_, stop_.get_token());
+    return Client(server_.Channel(), kCallTimeout, revival_)
+        .Watch(kJobName, callbacks, options_, stop_.get_token());
   }
 
   std::vector<std::string> Tokens() const {
@@ -58,6 +59,7 @@ class JobWatch : public ::testing::Test {
 
   FakeServer server_;
   WatchOptions options_;
+  Revival revival_;
   std::stop_source stop_;
   std::function<void()> after_snapshot_ = [] {}, after_disconnect_ = [] {};
   std::vector<Job::State> states_;
@@ -140,6 +142,16 @@ TEST_F(JobWatch, WaitsForABusyServer) {
   EXPECT_THAT(pauses_, SizeIs(1));
 }
 
+// No server listens at the address for a while, as during a restart.
+TEST_F(JobWatch, WaitsForAnAbsentServer) {
+  server_.watches = {Succeeded()};
+  after_disconnect_ = [this] {
+    if (pauses_.size() == 3) server_.Start();
+  };
+  EXPECT_OK(Watch());
+  EXPECT_THAT(pauses_, SizeIs(Ge(3)));
+}
+
 // This test does not count attempts: their number within the time depends on the machine.
 TEST_F(JobWatch, GivesUpAfterTheConfiguredTime) {
   Start({Unavailable()});
@@ -171,6 +183,17 @@ TEST_F(JobWatch, TheTimeToGiveUpBeginsWhenTheStreamBreaks) {
   options_.give_up_after = absl::Milliseconds(500);
   after_snapshot_ = [] { std::this_thread::sleep_for(std::chrono::milliseconds(600)); };
   EXPECT_OK(Watch());
+}
+
+TEST_F(JobWatch, StartsTheServerAgainBeforeEachNewAttempt) {
+  Start({Unavailable(), Unavailable(), Succeeded()});
+  int revivals = 0;
+  revival_ = [&revivals] {
+    ++revivals;
+    return absl::OkStatus();
+  };
+  EXPECT_OK(Watch());
+  EXPECT_EQ(revivals, 2);
 }
 
 TEST_F(JobWatch, AStopEndsTheWatchAtOnce) {
