@@ -6,7 +6,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/command/connection.h"
-#include "client/command/selection.h"
 #include "client/output/answers.h"
 #include "client/output/number_text.h"
 #include "client/output/spelling.h"

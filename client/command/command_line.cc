@@ -16,9 +16,8 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
-#include "client/command/config_file.h"
 #include "client/command/reference.h"
-#include "client/command/sorted_words.h"
+#include "client/command/settings.h"
 #include "client/command/suggestion.h"
 #include "client/library/error_text.h"
 #include "client/library/quoted.h"
@@ -29,34 +28,6 @@ namespace {
 absl::Status Named(const std::string& name, const absl::Status& status) {
   if (status.ok()) return status;
   return absl::Status(status.code(), absl::StrCat(name, ": ", status.message()));
-}
-
-// The value of a flag and its source. Sources are in the order of increasing priority.
-enum class Source { kFile, kSection, kVariable, kCommandLine };
-struct Setting {
-  std::string text;
-  Source source;
-};
-using Settings = std::map<const Flag*, Setting>;
-
-void AddVariables(const Verb& verb, Settings& settings) {
-  for (const Flag* flag : FlagsOf(verb)) {
-    std::string text = FromEnvironment(flag->variable);
-    if (!text.empty()) settings.try_emplace(flag, Setting{std::move(text), Source::kVariable});
-  }
-}
-
-absl::Status AddConfig(const Verb& verb, Settings& settings) {
-  std::string path = UsualConfig();
-  for (const auto& [flag, setting] : settings) {
-    if (LongName(*flag) == "--config") path = setting.text;
-  }
-  if (path.empty() || verb.act == &Help) return absl::OkStatus();
-  return ReadConfig(path, verb,
-                    [&](const Flag& flag, const std::string& text, bool is_for_this_verb) {
-                      const Source source = is_for_this_verb ? Source::kSection : Source::kFile;
-                      settings.try_emplace(&flag, Setting{text, source});
-                    });
 }
 
 // Whether another command needs this flag to reach the same server.
@@ -158,11 +129,7 @@ absl::Status WrongUsage(const std::string& message, const Verb* verb) {
                                                  " shows its usage)"));
 }
 
-absl::Status CheckWords(const Verb& verb, const SortedWords& words) {
-  if (words.flag_without_value != nullptr) {
-    return WrongUsage(LongName(*words.flag_without_value) + " needs a value", &verb);
-  }
-  if (verb.passes_words_on) return absl::OkStatus();
+absl::Status CheckArguments(const Verb& verb, const SortedWords& words) {
   if (!words.unknown_flag.empty()) return WrongUsage(NoSuchFlag(&verb, words.unknown_flag), &verb);
   const size_t given = words.arguments.size(), named = verb.arguments.size();
   const bool is_open = named > 0 && verb.arguments.back().IsMany();
@@ -178,16 +145,13 @@ absl::Status CheckWords(const Verb& verb, const SortedWords& words) {
   return absl::OkStatus();
 }
 
-absl::Status AddGiven(const Verb& verb, const SortedWords& words, Settings& settings) {
-  for (const auto& [flag, text] : words.flags) {
-    const auto [given, is_first] = settings.try_emplace(flag, Setting{text, Source::kCommandLine});
-    if (is_first) continue;
-    if (!flag->value.is_repeatable) {
-      return WrongUsage(LongName(*flag) + " is given more than once", &verb);
-    }
-    absl::StrAppend(&given->second.text, ",", text);
+absl::Status CheckWords(const Verb& verb, const SortedWords& words) {
+  if (words.flag_without_value != nullptr) {
+    return WrongUsage(LongName(*words.flag_without_value) + " needs a value", &verb);
   }
-  return absl::OkStatus();
+  absl::Status status = verb.passes_words_on ? absl::OkStatus() : CheckArguments(verb, words);
+  if (!status.ok() || words.repeated_flag == nullptr) return status;
+  return WrongUsage(LongName(*words.repeated_flag) + " is given more than once", &verb);
 }
 
 // A value from the environment or the config file counts too.
@@ -307,14 +271,12 @@ absl::StatusOr<CommandLine> ParseCommandLine(const std::vector<std::string>& wor
   if (sorted.has_help && !passes_help_on) return CommandLine{.page = ShortPage(verb)};
   CommandLine line{.verb = verb};
   line.options.line = words;
-  Settings settings;
-  absl::Status status = CheckWords(*verb, sorted);
-  if (status.ok()) status = AddGiven(*verb, sorted, settings);
-  AddVariables(*verb, settings);
-  if (status.ok()) status = AddConfig(*verb, settings);
-  if (status.ok()) status = CheckRequired(*verb, settings);
+  if (absl::Status bad = CheckWords(*verb, sorted); !bad.ok()) return bad;
+  const absl::StatusOr<Settings> settings = ReadSettings(*verb, sorted);
+  if (!settings.ok()) return settings.status();
+  absl::Status status = CheckRequired(*verb, *settings);
   if (status.ok()) status = ReadArguments(*verb, sorted.arguments, line.options);
-  if (status.ok()) status = ReadFlags(*verb, settings, line.options);
+  if (status.ok()) status = ReadFlags(*verb, *settings, line.options);
   if (!status.ok()) return status;
   return line;
 }

@@ -10,7 +10,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/time/time.h"
 #include "client/command/connection.h"
-#include "client/command/sorted_words.h"
+#include "client/command/settings.h"
 
 namespace ballpiston::client {
 namespace {

@@ -1,5 +1,5 @@
-// The server that a verb uses: --server, else BALLPISTON_SERVER or the config file, else the
-// private server (library/local_server.h).
+// The server and the jobs that a verb uses. The server is that of --server, else of
+// BALLPISTON_SERVER or the config file, else the private server (library/local_server.h).
 //
 // A Unix socket, such as the private server's, uses neither TLS nor tokens. Flags of TLS and tokens
 // are then an error; the same settings in the environment and the config file are ignored.
@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "client/command/options.h"
 #include "client/command/verbs.h"
@@ -44,5 +45,21 @@ using VerbOfServer = std::function<VerbResult(const Connection&)>;
 // `may_start`, for a verb that only shows the state of a server, no private server is started.
 VerbResult WithServer(const Options& options, const Terminal& terminal, const VerbOfServer& verb,
                       bool may_start = true);
+
+using JobStates = std::vector<v1::EnsembleJob::State>;
+
+inline const JobStates kActiveStates = {v1::EnsembleJob::QUEUED, v1::EnsembleJob::RUNNING,
+                                        v1::EnsembleJob::CANCELLING};
+inline const JobStates kEndedStates = {v1::EnsembleJob::SUCCEEDED, v1::EnsembleJob::FAILED,
+                                       v1::EnsembleJob::CANCELLED};
+
+using VerbOfJobs =
+    std::function<VerbResult(const Connection&, const std::vector<v1::EnsembleJob>&)>;
+
+// The same with jobs: those that are named (only `name` is set); with --label those that have all
+// these labels and one of the states (empty: any), newest first. INVALID_ARGUMENT if there are
+// neither names nor labels, or both. NOT_FOUND if no job has the labels.
+VerbResult WithJobs(const Options& options, const Terminal& terminal, const JobStates& states,
+                    const VerbOfJobs& verb);
 
 }  // namespace ballpiston::client

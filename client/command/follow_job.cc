@@ -7,7 +7,7 @@
 namespace ballpiston::client {
 namespace {
 
-std::string Farewell(const Connection& connection, const std::string& name) {
+std::string FarewellText(const Connection& connection, const std::string& name) {
   return absl::StrCat("The job continues.\n  watch it again:  ballpiston watch ", name,
                       connection.flags, "\n  cancel it:       ballpiston cancel ", name,
                       connection.flags);
@@ -31,8 +31,8 @@ ProgressStyle StyleOf(const Options& options) {
 absl::StatusOr<v1::EnsembleJob> FollowJob(const Connection& connection, const std::string& name,
                                           ProgressStyle style, const Terminal& terminal) {
   ProgressReporter reporter(style, terminal.err, name);
-  const std::string farewell = Farewell(connection, name);
-  const Interrupts::Scope scope(terminal.interrupts, [&] { reporter.Farewell(farewell); });
+  const std::string farewell = FarewellText(connection, name);
+  const OnInterrupt scope([&] { reporter.Farewell(farewell); });
   absl::StatusOr<v1::EnsembleJob> job = connection.client.Watch(name, Report(reporter));
   reporter.OnEnd();
   if (!job.ok() && !absl::IsNotFound(job.status())) reporter.Note(farewell);

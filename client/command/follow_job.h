@@ -11,7 +11,7 @@
 #include "client/command/connection.h"
 #include "client/command/options.h"
 #include "client/command/terminal.h"
-#include "client/output/progress_reporter.h"
+#include "client/output/progress.h"
 
 namespace ballpiston::client {
 

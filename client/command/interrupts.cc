@@ -1,22 +1,32 @@
 #include "client/command/interrupts.h"
 
-#include <poll.h>
-#include <sys/eventfd.h>
-#include <sys/signalfd.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
+#include <mutex>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "client/command/exit_code.h"
-#include "client/output/new_file.h"
+#include "client/output/output_file.h"
 
 namespace ballpiston::client {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestFarewell(150);
+
+struct Farewell {
+  std::mutex mutex;
+  const std::function<void()>* function = nullptr;  // of the innermost scope
+};
+
+Farewell& TheFarewell() {
+  static auto* const farewell = new Farewell;
+  return *farewell;
+}
 
 sigset_t SignalsNotIgnored() {
   sigset_t signals;
@@ -35,28 +45,10 @@ sigset_t SignalsNotIgnored() {
   std::_Exit(static_cast<int>(ExitCode::kInterrupted));
 }
 
-}  // namespace
-
-Interrupts::Interrupts() : signals_(SignalsNotIgnored()) {
-  pthread_sigmask(SIG_BLOCK, &signals_, &old_mask_);
-  signal_file_ = signalfd(-1, &signals_, SFD_CLOEXEC);
-  quit_file_ = eventfd(0, EFD_CLOEXEC);
-  thread_ = std::thread([this] { Listen(); });
-}
-
-Interrupts::~Interrupts() {
-  eventfd_write(quit_file_, 1);
-  thread_.join();
-  close(signal_file_);
-  close(quit_file_);
-  pthread_sigmask(SIG_SETMASK, &old_mask_, nullptr);
-}
-
-void Interrupts::Listen() {
-  pollfd files[] = {{signal_file_, POLLIN, 0}, {quit_file_, POLLIN, 0}};
-  while (poll(files, 2, -1) < 0) {
+void Listen(const sigset_t& signals) {
+  int received = 0;
+  while (sigwait(&signals, &received) != 0) {
   }
-  if (files[0].revents == 0) return;
   // A stopped terminal (Ctrl-S) or a full pipe must not keep the program from ending.
   try {
     std::thread([] {
@@ -69,30 +61,35 @@ void Interrupts::Listen() {
     signal(SIGALRM, [](int) { _exit(static_cast<int>(ExitCode::kInterrupted)); });
     ualarm(static_cast<useconds_t>(kLongestFarewell / std::chrono::microseconds(1)), 0);
   }
-  const std::lock_guard lock(mutex_);
-  if (farewell_ != nullptr) (*farewell_)();
+  const std::lock_guard lock(TheFarewell().mutex);
+  if (TheFarewell().function != nullptr) (*TheFarewell().function)();
   EndProgram();
 }
 
-Interrupts::Scope::Scope(Interrupts* interrupts, std::function<void()> farewell)
-    : interrupts_(interrupts), farewell_(std::move(farewell)) {
-  if (interrupts_ == nullptr) return;
-  const std::lock_guard lock(interrupts_->mutex_);
-  outer_ = std::exchange(interrupts_->farewell_, &farewell_);
+}  // namespace
+
+void ListenForInterrupts() {
+  const sigset_t signals = SignalsNotIgnored();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::thread([signals] { Listen(signals); }).detach();
 }
 
-Interrupts::Scope::~Scope() {
-  if (interrupts_ == nullptr) return;
-  const std::lock_guard lock(interrupts_->mutex_);
-  interrupts_->farewell_ = outer_;
+OnInterrupt::OnInterrupt(std::function<void()> farewell) : farewell_(std::move(farewell)) {
+  const std::lock_guard lock(TheFarewell().mutex);
+  outer_ = std::exchange(TheFarewell().function, &farewell_);
 }
 
-absl::StatusOr<int> RunInterruptible(const ChildProcess& child, Interrupts* interrupts,
+OnInterrupt::~OnInterrupt() {
+  const std::lock_guard lock(TheFarewell().mutex);
+  TheFarewell().function = outer_;
+}
+
+absl::StatusOr<int> RunInterruptible(const ChildProcess& child,
                                      const std::function<void(pid_t)>& stop) {
   absl::StatusOr<pid_t> pid;
   std::mutex mutex;
   std::unique_lock starting(mutex);  // an interruption waits until the child's id is known
-  const Interrupts::Scope scope(interrupts, [&] {
+  const OnInterrupt scope([&] {
     const std::lock_guard started(mutex);
     if (pid.ok()) stop(*pid);
   });

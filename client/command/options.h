@@ -15,8 +15,8 @@
 #include "client/command/terminal.h"
 #include "client/library/channel_security.h"
 #include "client/library/client.h"
-#include "client/output/progress_reporter.h"
-#include "client/output/result_writer.h"
+#include "client/output/point_output.h"
+#include "client/output/progress.h"
 
 namespace ballpiston::client {
 

@@ -13,9 +13,8 @@
 #include "absl/strings/strip.h"
 #include "client/command/number_list.h"
 #include "client/command/suggestion.h"
-#include "client/library/quoted.h"
-#include "client/output/field_text.h"
 #include "client/output/number_text.h"
+#include "client/output/table.h"
 
 namespace ballpiston::client {
 namespace {

@@ -15,15 +15,15 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
-#include "client/command/config_file.h"
 #include "client/command/follow_job.h"
 #include "client/command/interrupts.h"
+#include "client/command/settings.h"
 #include "client/command/suggestion.h"
 #include "client/command/verb_table.h"
 #include "client/library/child_process.h"
 #include "client/library/quoted.h"
 #include "client/library/server_process.h"
-#include "client/output/new_file.h"
+#include "client/output/output_file.h"
 
 namespace ballpiston::client {
 namespace {
@@ -92,8 +92,8 @@ VerbResult RunPythonProgram(const std::string& module, const std::vector<std::st
                  << "The file is not finished: run the same command again.\n";
     WaitForChild(pid).IgnoreError();
   };
-  const absl::StatusOr<int> status = RunInterruptible(
-      {.command = PythonCommand(words), .own_group = true}, terminal.interrupts, stop);
+  const absl::StatusOr<int> status =
+      RunInterruptible({.command = PythonCommand(words), .own_group = true}, stop);
   if (!status.ok()) return status.status();
   if (*status > 128 && *status != static_cast<int>(ExitCode::kInterrupted)) {
     return absl::InternalError(

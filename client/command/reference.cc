@@ -12,7 +12,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "client/command/suggestion.h"
-#include "client/output/new_file.h"
+#include "client/output/output_file.h"
 
 namespace ballpiston::client {
 namespace {

@@ -3,10 +3,9 @@
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
 #include "client/command/connection.h"
-#include "client/command/selection.h"
 #include "client/library/error_text.h"
 #include "client/output/json.h"
-#include "client/output/new_file.h"
+#include "client/output/output_file.h"
 #include "client/output/page_files.h"
 
 namespace ballpiston::client {

@@ -11,14 +11,13 @@
 #include "client/command/interrupts.h"
 #include "client/command/python.h"
 #include "client/command/question.h"
-#include "client/command/selection.h"
 #include "client/command/verb_table.h"
 #include "client/library/error_text.h"
 #include "client/library/quoted.h"
 #include "client/library/request_id.h"
-#include "client/output/new_file.h"
 #include "client/output/number_text.h"
-#include "client/output/result_writer.h"
+#include "client/output/output_file.h"
+#include "client/output/point_output.h"
 #include "client/output/spelling.h"
 
 namespace ballpiston::client {
@@ -30,7 +29,7 @@ namespace {
 absl::StatusOr<v1::EnsembleJob> CreateOnce(const Connection& connection,
                                            const v1::CreateEnsembleJobRequest& request,
                                            const Terminal& terminal) {
-  const Interrupts::Scope scope(terminal.interrupts, [&] {
+  const OnInterrupt scope([&] {
     terminal.err << "The server may have accepted the job. With --request-id "
                  << request.request_id() << " the same command returns this job.\n";
   });
@@ -138,19 +137,19 @@ absl::StatusOr<v1::ListResultsResponse> PageOf(const Connection& connection,
 absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job,
                          const Options& options, bool has_names, std::ostream& out,
                          std::ostream& err) {
-  const auto writer = NewResultWriter(FormatOf(options), out, /*is_file=*/!options.save.empty());
+  ResultWriter writer(FormatOf(options), out, /*is_file=*/!options.save.empty());
   std::string token;
   do {
     auto page = PageOf(connection, job.name(), options, token);
     if (!page.ok()) return HintIfExpired(page.status(), connection, job.name());
-    if (token.empty()) writer->Begin(job);
+    if (token.empty()) writer.Begin(job);
     for (v1::PointResult& point : *page->mutable_results()) {
       if (!has_names) point.clear_name();
-      AddPoint(point, *writer, err);
+      AddPoint(point, writer, err);
     }
     token = page->next_page_token();
   } while (!token.empty() && out.good());  // not after a failed write or a closed pipe
-  writer->End();
+  writer.End();
   return absl::OkStatus();
 }
 

@@ -6,9 +6,9 @@
 #include "absl/strings/str_cat.h"
 #include "client/command/python.h"
 #include "client/command/question.h"
-#include "client/output/field_text.h"
 #include "client/output/json.h"
-#include "client/output/new_file.h"
+#include "client/output/output_file.h"
+#include "client/output/table.h"
 
 namespace ballpiston::client {
 namespace {

@@ -77,8 +77,8 @@ absl::Status MakeFolder(const std::string& folder) {
 VerbResult RunBallpistond(std::vector<std::string> flags, const Terminal& terminal) {
   flags.insert(flags.begin(), UsualServerProgram());
   terminal.Detail(absl::StrJoin(flags, " "));
-  const absl::StatusOr<int> status = RunInterruptible(
-      {.command = std::move(flags)}, terminal.interrupts, [](pid_t pid) { kill(pid, SIGTERM); });
+  const absl::StatusOr<int> status =
+      RunInterruptible({.command = std::move(flags)}, [](pid_t pid) { kill(pid, SIGTERM); });
   if (!status.ok()) return absl::FailedPreconditionError(status.status().message());
   return ExitCodeOf(*status);
 }

@@ -7,14 +7,11 @@
 
 namespace ballpiston::client {
 
-class Interrupts;
-
 enum class Verbosity { kQuiet, kNormal, kVerbose };
 
 struct Terminal {
   std::ostream& out;
   std::ostream& err;
-  Interrupts* interrupts = nullptr;  // null: the program does not handle signals
   Verbosity verbosity = Verbosity::kNormal;
   bool colour = false;  // standard error accepts colours
 

@@ -31,7 +31,8 @@ VerbFunction ServerStart, ServerStop, ServerAddress, ServerStatus, ServerToken, 
     ServerCheck;
 VerbFunction Help, Complete;
 
-// What Web does in ballpiston-web (web/serve.cc); null elsewhere: there Web starts ballpiston-web.
+// What Web does in ballpiston-web (web/web_server.cc); null elsewhere: there Web starts
+// ballpiston-web.
 inline VerbFunction* serve_page = nullptr;
 
 // The names of the installed figures.

@@ -9,7 +9,6 @@
 #include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
 #include "client/command/follow_job.h"
-#include "client/command/selection.h"
 #include "client/library/child_process.h"
 #include "client/output/spelling.h"
 

@@ -11,8 +11,7 @@
 #include "ballpiston/v1/analytic.pb.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/server.pb.h"
-#include "ballpiston/v1/spec.pb.h"
-#include "client/output/result_writer.h"
+#include "client/output/point_output.h"
 
 namespace ballpiston::client {
 
@@ -28,26 +27,6 @@ namespace ballpiston::client {
 //           names. A cell is empty if its row has no such value. CSV does not contain the kernel.
 void PrintAnalytics(const v1::EvaluatePairsResponse& response,
                     const std::vector<double>& outgoing_epsilon, Format format, std::ostream& out);
-
-// The ladder of models for each point of a specification, which sets the heading of the table and
-// the columns of CSV.
-//
-//   table   for each point its models, cheapest first, with a mark at the chosen model and the
-//           reason for the choice. With more than kMostLadders points: one row per point, with the
-//           chosen model. Then the cost of all points.
-//   json    the response
-//   jsonl   one point per line
-//   csv     one row for each point and model:
-//           rho,delta,epsilon,exponent,model,chosen,answers,samples,work,relative_statistical_error,
-//           relative_model_error,reason; after exponent the other parameters of the specification
-//           (field_text.h)
-//
-// Work is in seconds of one core (a table prints the units). Errors are relative. Unknown values
-// are empty. In CSV the reason of the chosen model has two parts: why it was chosen and, after a
-// semicolon, the source of its error.
-inline constexpr int kMostLadders = 8;
-void PrintPlan(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan, Format format,
-               std::ostream& out);
 
 // Jobs; JSON is {"jobs": [...]}. The table has a column for the principal if the jobs have
 // different principals, a column for the priority if a priority is not 0, a column for the results

@@ -1,15 +1,19 @@
 #include "client/web/connect_protocol.h"
 
+#include <google/protobuf/message.h>
 #include <google/protobuf/struct.pb.h>
 #include <google/protobuf/util/json_util.h>
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
 #include "client/library/error_text.h"
 #include "client/output/json.h"
@@ -17,7 +21,9 @@
 namespace ballpiston::client {
 namespace {
 
+using google::protobuf::Descriptor;
 using google::protobuf::ListValue;
+using google::protobuf::Message;
 using google::protobuf::Struct;
 
 constexpr size_t kPrefix = 5;  // flags and length
@@ -65,6 +71,11 @@ std::string FlaggedEnvelope(char flags, absl::string_view message) {
   return absl::StrCat(envelope, message);
 }
 
+std::unique_ptr<Message> New(const Descriptor* type) {
+  return std::unique_ptr<Message>(
+      google::protobuf::MessageFactory::generated_factory()->GetPrototype(type)->New());
+}
+
 }  // namespace
 
 int HttpStatus(absl::StatusCode code) {
@@ -96,6 +107,30 @@ absl::StatusOr<std::string> OpenEnvelope(absl::string_view body) {
   return absl::InvalidArgumentError(
       "the request of a stream must be one message in an envelope: a byte 0, the length as 4 "
       "bytes, big-endian, and the JSON");
+}
+
+const google::protobuf::MethodDescriptor* FindMethod(absl::string_view path) {
+  const auto* method = google::protobuf::DescriptorPool::generated_pool()->FindMethodByName(
+      absl::StrReplaceAll(path, {{"/", "."}}));
+  if (method == nullptr || method->client_streaming()) return nullptr;
+  const bool is_spelled_so =
+      path == absl::StrCat(method->service()->full_name(), "/", method->name());
+  return is_spelled_so && absl::StartsWith(path, "ballpiston.v1.") ? method : nullptr;
+}
+
+absl::Status CallWithJson(const Client& client, const google::protobuf::MethodDescriptor& method,
+                          const std::string& json, absl::Duration timeout,
+                          const JsonReceiver& receive) {
+  const Descriptor* const type = method.input_type();
+  const std::unique_ptr<Message> request = New(type);
+  const absl::Status bad = ReadJson(json.empty() ? "{}" : json, *request);
+  if (!bad.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the request is not JSON of ", type->full_name(), ": ", bad.message()));
+  }
+  const std::unique_ptr<Message> answer = New(method.output_type());
+  const auto on_answer = [&] { return receive(Json(*answer)); };
+  return client.Call(*request, *answer, on_answer, timeout);
 }
 
 }  // namespace ballpiston::client

@@ -1,9 +1,29 @@
-#include "client/web/web_server.h"
-
+// ballpiston-web has the main function and the verbs of ballpiston, but its verb `web` is this HTTP
+// server for local connections: the files of the page, and a gateway that forwards calls in the
+// Connect protocol to ballpistond.
+//
+//   GET  /                                 the page
+//   POST /ballpiston.v1.SERVICE/METHOD     a call, with the token
+//
+// Other programs on this machine, and web pages of other sites in the user's browser, can reach the
+// same port. Headers of a request are checked before its body is read:
+//
+//   Host           must be this page's address. This rejects a foreign name that resolves to this
+//                  machine (DNS rebinding).
+//   Origin         must be this page's, if the browser sends it
+//   Authorization  must be Bearer TOKEN in every call to the server. The page's files contain no
+//                  secrets and need no token.
+//   Content-Length must be there in every call, without Content-Encoding and Transfer-Encoding, so
+//                  that the size of the body is known
+//
+// Each connection uses one of kMostConnections threads. A stream beyond kMostStreams is refused, so
+// that threads are left for other calls. If a stream's reader disconnects, the call ends at the
+// next message. A watch sends heartbeats, so that there is always a next message.
 #include <httplib.h>
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -14,16 +34,21 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/time/time.h"
+#include "client/command/connection.h"
 #include "client/library/quoted.h"
 #include "client/library/request_id.h"
+#include "client/output/page_files.h"
 #include "client/web/connect_protocol.h"
-#include "client/web/json_call.h"
 
 namespace ballpiston::client {
 namespace {
 
 constexpr char kLoopback[] = "127.0.0.1";
+constexpr int kMostConnections = 32;
+constexpr int kMostStreams = 24;
 constexpr size_t kMostCallsPerConnection = 1000;
+// JSON is two to three times longer than gRPC's message, of which the server permits 4 MiB.
+constexpr size_t kMostRequestBytes = 16 << 20;
 // The longest time that a reader of a stream may pause.
 constexpr std::chrono::hours kPatience{1};
 
@@ -124,16 +149,16 @@ class WebServer {
     server_.Post("/(.+)", [this](const auto& in, auto& out) { PassOn(in, out); });
   }
 
-  absl::Status Bind(int port) {
+  // Opens the port; 0: a free one. Returns false if it is in use or not permitted.
+  bool Bind(int port) {
     if (port == 0) {
       port = server_.bind_to_any_port(kLoopback);
     } else if (!server_.bind_to_port(kLoopback, port)) {
       port = -1;
     }
-    if (port < 0) return absl::UnavailableError("the port is in use or not permitted");
     const std::string suffix = port == 80 ? "" : absl::StrCat(":", port);  // as browsers write it
     hosts_ = {kLoopback + suffix, "localhost" + suffix};
-    return absl::OkStatus();
+    return port >= 0;
   }
 
   // The token is in the fragment, which browsers do not send.
@@ -269,15 +294,26 @@ class WebServer {
   httplib::Server server_;
 };
 
-}  // namespace
-
-absl::Status ServePage(const PageFiles& files, const Connection& connection, int port,
-                       const std::function<void(const std::string& url)>& ready) {
-  WebServer server(files, connection);
-  if (absl::Status bound = server.Bind(port); !bound.ok()) return bound;
-  ready(server.Url());
-  server.Serve();
-  return absl::OkStatus();
+// Serves until the program ends.
+VerbResult ServePage(const Options& options, Terminal& terminal) {
+  const auto files = ReadPageFiles();
+  if (!files.ok()) return files.status();
+  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+    WebServer server(*files, connection);
+    if (!server.Bind(static_cast<int>(options.port))) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("--port ", options.port, ": the port is in use or not permitted"));
+    }
+    terminal.out << server.Url() << std::endl;
+    terminal.Note(
+        "Ctrl-C stops the page, but not the jobs. Keep the address secret: anyone who has it can "
+        "use the server in your name.");
+    server.Serve();
+    return ExitCode::kDone;
+  });
 }
 
+[[maybe_unused]] const bool kIsSet = (serve_page = &ServePage, true);
+
+}  // namespace
 }  // namespace ballpiston::client

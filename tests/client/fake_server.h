@@ -15,19 +15,46 @@
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/server.grpc.pb.h"
 #include "ballpiston/v1/trace.grpc.pb.h"
+#include "client/library/channel.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::client {
 
 // An error with the details that a server attaches.
-grpc::Status WithReason(grpc::StatusCode code, const std::string& message,
-                        const std::string& reason);
+inline grpc::Status WithReason(grpc::StatusCode code, const std::string& message,
+                               const std::string& reason) {
+  google::rpc::ErrorInfo info;
+  info.set_reason(reason);
+  google::rpc::Status details;
+  details.add_details()->PackFrom(info);
+  return grpc::Status(code, message, details.SerializeAsString());
+}
 
 inline constexpr char kJobName[] = "ensembleJobs/abc";  // the name that JobIn gives
 
-v1::WatchEnsembleJobResponse JobMessage(const v1::EnsembleJob& job, const std::string& token);
-v1::WatchEnsembleJobResponse SnapshotMessage(double samples, const std::string& token);
-v1::EnsembleJob JobIn(v1::EnsembleJob::State state);
+inline v1::WatchEnsembleJobResponse JobMessage(const v1::EnsembleJob& job,
+                                               const std::string& token) {
+  v1::WatchEnsembleJobResponse message;
+  *message.mutable_job() = job;
+  message.set_resume_token(token);
+  return message;
+}
+
+inline v1::WatchEnsembleJobResponse SnapshotMessage(double samples, const std::string& token) {
+  v1::WatchEnsembleJobResponse message;
+  message.mutable_snapshot()->mutable_progress()->set_samples(samples);
+  message.set_resume_token(token);
+  return message;
+}
+
+inline v1::EnsembleJob JobIn(v1::EnsembleJob::State state) {
+  v1::EnsembleJob job;
+  job.set_name(kJobName);
+  job.set_state(state);
+  return job;
+}
 
 // The messages and the final status that the server sends to one watch. With `hangs` it sends the
 // final status only when the server stops.
@@ -43,7 +70,10 @@ class FakeServer final : v1::EnsembleService::Service,
                          v1::ServerService::Service {
  public:
   FakeServer() = default;
-  ~FakeServer() override;
+  ~FakeServer() override {
+    released_.count_down();
+    if (server_) server_->Shutdown();
+  }
   FakeServer(const FakeServer&) = delete;
   FakeServer& operator=(const FakeServer&) = delete;
 
@@ -58,16 +88,23 @@ class FakeServer final : v1::EnsembleService::Service,
   v1::ServerStatus status;
   grpc::Status create_end, plan_end, trace_end;
   int unavailable_attempts = 0;  // the first attempts of create, cancel, update or delete that fail
-  std::string pushback;  // milliseconds that failed attempts of update ask to wait; empty: none
-  int page_size = 2;     // the largest page, whatever size the client requests
+  int page_size = 2;             // the largest page, whatever size the client requests
   int unavailable_later_pages = 0;  // failing attempts to list a page after the first page
-  int largest_request = 4 << 20;    // bytes; -1: any
 
   std::string Address() const { return "unix:" + SocketPath(); }
   std::string SocketPath() const { return folder_.File("socket"); }
-  std::shared_ptr<grpc::Channel> Channel() const;  // made by OpenChannel
+  std::shared_ptr<grpc::Channel> Channel() const { return *OpenChannel(Address()); }
   // Set the answers before this call. Further calls do nothing.
-  void Start();
+  void Start() {
+    if (server_ != nullptr) return;
+    grpc::ServerBuilder builder;
+    builder.AddListeningPort(Address(), grpc::InsecureServerCredentials());
+    builder.RegisterService(static_cast<v1::EnsembleService::Service*>(this));
+    builder.RegisterService(static_cast<v1::AnalyticService::Service*>(this));
+    builder.RegisterService(static_cast<v1::TraceService::Service*>(this));
+    builder.RegisterService(static_cast<v1::ServerService::Service*>(this));
+    server_ = builder.BuildAndStart();
+  }
 
   // The requests so far that have this type.
   template <typename Request>
@@ -80,7 +117,13 @@ class FakeServer final : v1::EnsembleService::Service,
     return found;
   }
   // The last request of a call, such as ListResults; null if there is none.
-  const google::protobuf::Message* LastAsked(const std::string& call) const;
+  const google::protobuf::Message* LastAsked(const std::string& call) const {
+    const std::lock_guard lock(mutex_);
+    const auto last = std::find_if(asked_.rbegin(), asked_.rend(), [&](const auto& request) {
+      return request->GetDescriptor()->name() == call + "Request";
+    });
+    return last == asked_.rend() ? nullptr : last->get();
+  }
 
  private:
   using Context = grpc::ServerContext;
@@ -128,7 +171,7 @@ class FakeServer final : v1::EnsembleService::Service,
                                  v1::EnsembleJob* job) override {
     const auto lock = Record(*request);
     if (unavailable_attempts-- > 0) {
-      if (!pushback.empty()) context->AddTrailingMetadata("grpc-retry-pushback-ms", pushback);
+      context->AddTrailingMetadata("grpc-retry-pushback-ms", "400");
       return kNotYet;
     }
     const grpc::Status found = FindWithResults(request->job().name(), job);
@@ -215,11 +258,27 @@ class FakeServer final : v1::EnsembleService::Service,
   }
 
   // The caller holds the lock while it makes its answer.
-  std::unique_lock<std::mutex> Record(const google::protobuf::Message& request);
+  std::unique_lock<std::mutex> Record(const google::protobuf::Message& request) {
+    std::unique_lock lock(mutex_);
+    asked_.emplace_back(request.New())->CopyFrom(request);
+    return lock;
+  }
 
-  grpc::Status Find(const std::string& name, v1::EnsembleJob* job) const;
+  grpc::Status Find(const std::string& name, v1::EnsembleJob* job) const {
+    for (const v1::EnsembleJob& each : jobs) {
+      if (each.name() != name) continue;
+      *job = each;
+      return grpc::Status::OK;
+    }
+    return WithReason(grpc::StatusCode::NOT_FOUND, "no such job: " + name, "JOB_NOT_FOUND");
+  }
   // Also fails if the job's results have expired.
-  grpc::Status FindWithResults(const std::string& name, v1::EnsembleJob* job) const;
+  grpc::Status FindWithResults(const std::string& name, v1::EnsembleJob* job) const {
+    const grpc::Status found = Find(name, job);
+    if (!found.ok() || !job->results_expired()) return found;
+    return WithReason(grpc::StatusCode::FAILED_PRECONDITION, name + ": its results have expired",
+                      "RESULTS_EXPIRED");
+  }
 
   // Copies `size` items into the page, from the place that its token names. The token of the next
   // page is the index of its first item.

@@ -4,9 +4,8 @@
 #include "client/library/error_text.h"
 #include "client/library/server_address.h"
 #include "client/output/json.h"
-#include "client/output/result_writer.h"
+#include "client/output/point_output.h"
 #include "client/web/connect_protocol.h"
-#include "client/web/json_call.h"
 #include "google/rpc/status.pb.h"
 #include "server/convert/deterministic_bytes.h"
 #include "server/convert/spec.h"
@@ -128,10 +127,10 @@ void CheckErrorText(const std::string& bytes) {
 
 std::string Printed(const v1::ListResultsResponse& page, client::Format format) {
   std::ostringstream out;
-  const auto writer = client::NewResultWriter(format, out);
-  writer->Begin(v1::EnsembleJob());
-  for (const v1::PointResult& point : page.results()) writer->Add(point);
-  writer->End();
+  client::ResultWriter writer(format, out);
+  writer.Begin(v1::EnsembleJob());
+  for (const v1::PointResult& point : page.results()) writer.Add(point);
+  writer.End();
   return out.str();
 }
 

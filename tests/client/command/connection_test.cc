@@ -18,13 +18,6 @@ class ConnectionTest : public ProgramTest {
   }
 };
 
-TEST_F(ConnectionTest, WithoutAServerExitsWithThreeAndNamesIt) {
-  const Outcome outcome = Ballpiston({"status", "--server", server_.Address()});
-  EXPECT_EQ(outcome.code, 3);
-  EXPECT_THAT(outcome.err,
-              StartsWith("ballpiston: no answer from the server at " + server_.Address() + ": "));
-}
-
 TEST_F(ConnectionTest, ARetryToAPrivateServerHasTheSameRequestId) {
   StartPrivateServer(kChannelAttempts);
   const Outcome outcome = Ballpiston({"submit", "first-hit", "--rho", "0.53"});

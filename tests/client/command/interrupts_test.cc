@@ -3,34 +3,35 @@
 
 #include <latch>
 
-#include "client/output/new_file.h"
+#include "client/output/output_file.h"
 #include "tests/client/preamble.h"
 #include "tests/support/death_test_folder.h"
 
 namespace ballpiston::client {
 namespace {
 
-sigset_t Signals() {
+// If one thread does not block a signal, the signal ends the program. The mask is set before main,
+// so that all threads inherit it, also the threads of gRPC. The client listens for interrupts
+// before it starts a thread.
+[[maybe_unused]] const bool kSignalsAreBlocked = [] {
   sigset_t signals;
   sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
-  return signals;
-}
-
-// If one thread does not block a signal, the signal ends the program. The mask is set before main,
-// so that all threads inherit it, also the threads of gRPC. The client constructs Interrupts before
-// it starts a thread.
-[[maybe_unused]] const bool kSignalsAreBlocked = [] {
-  // In the background of a shell or under nohup they are ignored.
-  for (const int ignored : {SIGINT, SIGTERM, SIGHUP}) signal(ignored, SIG_DFL);
-  const sigset_t signals = Signals();
+  for (const int signal_of_user : {SIGINT, SIGTERM, SIGHUP}) {
+    signal(signal_of_user, SIG_DFL);  // in the background of a shell or under nohup it is ignored
+    sigaddset(&signals, signal_of_user);
+  }
   return pthread_sigmask(SIG_BLOCK, &signals, nullptr) == 0;
 }();
 
-void Send(int signal) { kill(getpid(), signal); }
-
 void SleepForEver() {
   while (true) pause();
+}
+
+// The program gets the signal while it listens.
+void InterruptWith(int signal) {
+  ListenForInterrupts();
+  kill(getpid(), signal);
+  SleepForEver();
 }
 
 // Expects that a signal ends the process while `act` runs. `output`: of standard error.
@@ -42,24 +43,20 @@ void ExpectInterrupted(const std::function<void()>& act,
 TEST(InterruptsDeathTest, TheInnermostFarewellRuns) {
   ExpectInterrupted(
       [] {
-        Interrupts interrupts;
-        const Interrupts::Scope outer(&interrupts, [] { std::cerr << "outer"; });
-        const Interrupts::Scope inner(&interrupts, [] { std::cerr << "inner"; });
+        const OnInterrupt outer([] { std::cerr << "outer"; });
+        const OnInterrupt inner([] { std::cerr << "inner"; });
         {
-          const Interrupts::Scope ended(&interrupts, [] { std::cerr << "ended"; });
+          const OnInterrupt ended([] { std::cerr << "ended"; });
         }
-        Send(SIGINT);
-        SleepForEver();
+        InterruptWith(SIGINT);
       },
       AllOf(HasSubstr("inner"), Not(HasSubstr("outer")), Not(HasSubstr("ended"))));
 }
 
 TEST(InterruptsDeathTest, TheProgramEndsDuringAHangingFarewell) {
   ExpectInterrupted([] {
-    Interrupts interrupts;
-    const Interrupts::Scope scope(&interrupts, [] { SleepForEver(); });
-    Send(SIGTERM);
-    SleepForEver();
+    const OnInterrupt scope([] { SleepForEver(); });
+    InterruptWith(SIGTERM);
   });
 }
 
@@ -67,16 +64,16 @@ TEST(InterruptsDeathTest, TheProgramEndsDuringAHangingFarewell) {
 TEST(InterruptsDeathTest, TheProgramEndsWhenNoThreadIsLeft) {
   ExpectInterrupted(
       [] {
-        Interrupts interrupts;
-        const Interrupts::Scope scope(&interrupts, [] {
+        const OnInterrupt scope([] {
           std::cerr << "farewell";
           SleepForEver();
         });
+        ListenForInterrupts();
         pthread_attr_t attributes;
         pthread_attr_init(&attributes);
         pthread_attr_setstacksize(&attributes, size_t{1} << 60);
         pthread_setattr_default_np(&attributes);
-        Send(SIGINT);
+        kill(getpid(), SIGINT);
         SleepForEver();
       },
       HasSubstr("farewell"));
@@ -85,11 +82,9 @@ TEST(InterruptsDeathTest, TheProgramEndsWhenNoThreadIsLeft) {
 TEST(InterruptsDeathTest, NoPartOfAFileIsLeft) {
   const DeathTestFolder folder;
   ExpectInterrupted([&] {
-    Interrupts interrupts;
     NewFile file("--save", folder.path() + "/result.csv");
     file.out() << "half";
-    Send(SIGINT);
-    SleepForEver();
+    InterruptWith(SIGINT);
   });
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
@@ -97,54 +92,37 @@ TEST(InterruptsDeathTest, NoPartOfAFileIsLeft) {
 // After the scope its owner destroys objects that the farewell uses.
 TEST(InterruptsDeathTest, TheEndOfAScopeWaitsForItsFarewell) {
   ExpectInterrupted([] {
-    Interrupts interrupts;
+    ListenForInterrupts();
     std::latch begun(1);
     {
-      const Interrupts::Scope scope(&interrupts, [&] {
+      const OnInterrupt scope([&] {
         begun.count_down();
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
       });
-      Send(SIGINT);
+      kill(getpid(), SIGINT);
       begun.wait();
     }
     _exit(0);
   });
 }
 
-bool IsBlocked(int signal) {
-  sigset_t mask;
-  pthread_sigmask(SIG_BLOCK, nullptr, &mask);
-  return sigismember(&mask, signal) == 1;
-}
-
-class InterruptsTest : public ::testing::Test {
- protected:
-  InterruptsTest() {
-    const sigset_t signals = Signals();
-    pthread_sigmask(SIG_UNBLOCK, &signals, &old_);
-  }
-  ~InterruptsTest() override { pthread_sigmask(SIG_SETMASK, &old_, nullptr); }
-
-  sigset_t old_;
-};
-
-TEST_F(InterruptsTest, LeavesTheSignalMaskAsItWas) {
-  {
-    const Interrupts interrupts;
-    EXPECT_TRUE(IsBlocked(SIGINT) && IsBlocked(SIGTERM) && IsBlocked(SIGHUP));
-  }
-  EXPECT_FALSE(IsBlocked(SIGINT) || IsBlocked(SIGTERM) || IsBlocked(SIGHUP));
-}
-
-TEST_F(InterruptsTest, AnIgnoredSignalStaysIgnored) {
-  const auto old = signal(SIGHUP, SIG_IGN);
-  {
-    const Interrupts interrupts;
-    EXPECT_FALSE(IsBlocked(SIGHUP));
-    EXPECT_TRUE(IsBlocked(SIGINT));
-    Send(SIGHUP);
-  }
-  signal(SIGHUP, old);
+TEST(InterruptsDeathTest, AnIgnoredSignalStaysIgnored) {
+  ExpectInterrupted(
+      [] {
+        signal(SIGHUP, SIG_IGN);
+        const OnInterrupt scope([] {
+          sigset_t mask;
+          pthread_sigmask(SIG_BLOCK, nullptr, &mask);
+          std::cerr << "blocked: " << sigismember(&mask, SIGHUP) << sigismember(&mask, SIGTERM);
+        });
+        const sigset_t none{};
+        pthread_sigmask(SIG_SETMASK, &none, nullptr);
+        ListenForInterrupts();
+        kill(getpid(), SIGHUP);
+        kill(getpid(), SIGTERM);
+        SleepForEver();
+      },
+      HasSubstr("blocked: 01"));
 }
 
 }  // namespace

@@ -12,46 +12,34 @@ namespace {
 
 // ---- child_process.h ----
 
-class ChildProcessTest : public ::testing::Test {
- protected:
-  int RunShell(const std::string& script) const {
-    const auto status = RunChild({.command = {"sh", "-c", script},
-                                  .folder = folder_.path(),
-                                  .output = folder_.File("output"),
-                                  .detached = false});
-    EXPECT_OK(status);
-    return status.value_or(-1);
-  }
-  std::string Output() const { return Contents(folder_.File("output")); }
-
-  const TemporaryFolder folder_;
-};
-
-TEST_F(ChildProcessTest, RunsInItsFolderAndAppendsItsOutputToAPrivateFile) {
-  RunShell("pwd; echo error >&2");
-  RunShell("echo again");
-  EXPECT_EQ(Output(), std::filesystem::canonical(folder_.path()).string() + "\nerror\nagain\n");
-  EXPECT_EQ(ModeOf(folder_.File("output")), 0600u);
+int ExitCodeOfShell(const std::string& script) {
+  return RunChild({.command = {"sh", "-c", script}}).value_or(-1);
 }
 
-TEST_F(ChildProcessTest, StartsWithNoSignalBlocked) {
+TEST(ChildProcess, StartsWithNoSignalBlocked) {
   sigset_t sigint, old;
   sigemptyset(&sigint);
   sigaddset(&sigint, SIGINT);
   pthread_sigmask(SIG_BLOCK, &sigint, &old);
-  EXPECT_EQ(RunShell("kill -INT $$; echo survived"), 128 + SIGINT);
+  EXPECT_EQ(ExitCodeOfShell("kill -INT $$"), 128 + SIGINT);
   pthread_sigmask(SIG_SETMASK, &old, nullptr);
 }
 
 // `nohup` starts this program with SIGHUP ignored, so that its commands go on after a logout.
-TEST_F(ChildProcessTest, IgnoresSighupIfThisProgramDoes) {
+TEST(ChildProcess, IgnoresSighupIfThisProgramDoes) {
   const auto old = signal(SIGHUP, SIG_IGN);
-  EXPECT_EQ(RunShell("kill -HUP $$; echo survived"), 0);
+  EXPECT_EQ(ExitCodeOfShell("kill -HUP $$"), 0);
   signal(SIGHUP, old);
-  EXPECT_EQ(Output(), "survived\n");
 }
 
 // ---- server_process.h ----
+
+// Writes a shell script that can be run.
+std::string Script(const std::string& path, const std::string& script) {
+  WriteFile(path, "#!/bin/sh\n" + script + "\n");
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  return path;
+}
 
 // A fake server as a shell script; $2 is its data folder. The server takes the lock, writes its
 // process id into the lock file and writes its address. It ends at SIGTERM, or when the test's
@@ -66,9 +54,9 @@ class ServerProcessTest : public ::testing::Test {
   ServerProcessTest() { std::filesystem::create_directory(data_); }
 
   ServerProgram Program(const std::string& script) const {
-    WriteFile(folder_.File("program"), "#!/bin/sh\nIFS=\n" + script);  // $2 may have spaces
-    std::filesystem::permissions(folder_.File("program"), std::filesystem::perms::owner_all);
-    return {.program = folder_.File("program"), .folder = data_, .flags = {"--flag", "a b"}};
+    return {.program = Script(folder_.File("program"), "IFS=\n" + script),  // $2 may have spaces
+            .folder = data_,
+            .flags = {"--flag", "a b"}};
   }
 
   const TemporaryFolder folder_;
@@ -77,9 +65,10 @@ class ServerProcessTest : public ::testing::Test {
 
 TEST_F(ServerProcessTest, GetsItsFlagsInItsFolder) {
   const ScopedVariable token("BALLPISTON_TOKEN", "secret");  // not for the server
-  ServerProgram program = Program("pwd; printf '<%s>' \"$@\" \"$BALLPISTON_TOKEN\"; exit 1");
+  ServerProgram program = Program("pwd >&2; printf '<%s>' \"$@\" \"$BALLPISTON_TOKEN\"; exit 1");
   EXPECT_THAT(StartServer(program), StatusIs(absl::StatusCode::kUnavailable));
   EXPECT_EQ(Contents(program.Log()), "/\n<--data-dir><" + data_ + "><--flag><a b><>");
+  EXPECT_EQ(ModeOf(program.Log()), 0600u);
   EXPECT_STREQ(std::getenv("BALLPISTON_TOKEN"), "secret");
   program.run_in = data_;
   EXPECT_THAT(StartServer(program), StatusIs(absl::StatusCode::kUnavailable));
@@ -175,12 +164,12 @@ namespace fs = std::filesystem;
 // Runs with an empty HOME, and without the variables that choose the server.
 class LocalServerTest : public ::testing::Test {
  protected:
-  // A program that runs the shell script.
-  std::string Program(const std::string& script) const {
-    const fs::path path = home_ / "program";
-    WriteFile(path, std::string("#!/bin/sh\n") + script + "\n");
-    fs::permissions(path, fs::perms::owner_all);
-    return path.string();
+  // In the home folder, with a program that runs the shell script.
+  LocalServer Server(const std::string& script, absl::Duration start_time) const {
+    return {.folder = home_.string(),
+            .socket = home_ / "socket",
+            .program = Script(home_ / "program", script),
+            .start_time = start_time};
   }
 
   const TemporaryFolder folder_;
@@ -256,10 +245,7 @@ TEST_F(LocalServerTest, TheEnvironmentCanSetTheProgram) {
 TEST_F(LocalServerTest, PermanentFailuresToStartKeepTheirStatus) {
   for (const auto& [program, code] : {std::pair("exit 2", absl::StatusCode::kInvalidArgument),
                                       std::pair("exit 6", absl::StatusCode::kPermissionDenied)}) {
-    EXPECT_THAT(
-        ConnectToLocalServer(
-            {.folder = home_.string(), .socket = home_ / "socket", .program = Program(program)}),
-        StatusIs(code));
+    EXPECT_THAT(ConnectToLocalServer(Server(program, absl::FromChrono(kPatience))), StatusIs(code));
   }
 }
 
@@ -277,21 +263,14 @@ void AwaitFile(const fs::path& file, const std::stop_token& stop) {
 
 TEST_F(LocalServerTest, AFolderInUseIsUnavailable) {
   const auto in_use = FolderInUse(home_);
-  EXPECT_THAT(ConnectToLocalServer({.folder = home_.string(),
-                                    .socket = home_ / "socket",
-                                    .program = Program("exit 2"),
-                                    .start_time = absl::Seconds(1)}),
+  EXPECT_THAT(ConnectToLocalServer(Server("exit 2", absl::Seconds(1))),
               StatusIs(absl::StatusCode::kUnavailable));
 }
 
 TEST_F(LocalServerTest, DoesNotWaitForAServerThatListensElsewhere) {
-  const LocalServer server{.folder = home_.string(),
-                           .socket = home_ / "socket",
-                           .program = Program("echo why; exit 2"),
-                           .start_time = absl::FromChrono(kUnreachedLimit)};
   const auto in_use = FolderInUse(home_);
   WriteFile(home_ / "server.address", "127.0.0.1:50051\n");
-  EXPECT_THAT(ConnectToLocalServer(server),
+  EXPECT_THAT(ConnectToLocalServer(Server("echo why; exit 2", absl::FromChrono(kUnreachedLimit))),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("listens at 127.0.0.1:50051")));
 }
 
@@ -300,15 +279,13 @@ TEST_F(LocalServerTest, DoesNotWaitForAServerThatListensElsewhere) {
 TEST_F(LocalServerTest, StartsAServerWhenAnotherLeavesTheFolder) {
   FakeServer second;
   auto in_use = FolderInUse(home_);
-  const LocalServer server{
-      .folder = home_.string(),
-      .socket = second.SocketPath(),
-      .program = Program(absl::StrCat(
-          "cd \"${0%/*}\"; if [ -e once ]; then exec 9>>lock; flock 9; echo $$ >lock; ",
-          "echo unix:", second.SocketPath(), " >server.address; touch twice; ",
-          "while [ -e once ] && kill -0 $PPID; do sleep 0.01 9>&-; done; exit 1; fi; ",
-          "touch once; exit 1")),
-      .start_time = absl::FromChrono(kPatience)};
+  LocalServer server = Server(
+      absl::StrCat("cd \"${0%/*}\"; if [ -e once ]; then exec 9>>lock; flock 9; echo $$ >lock; ",
+                   "echo unix:", second.SocketPath(), " >server.address; touch twice; ",
+                   "while [ -e once ] && kill -0 $PPID; do sleep 0.01 9>&-; done; exit 1; fi; ",
+                   "touch once; exit 1"),
+      absl::FromChrono(kPatience));
+  server.socket = second.SocketPath();
   std::jthread starter([&](const std::stop_token& stop) {
     AwaitFile(home_ / "once", stop);
     in_use.reset();

@@ -1,8 +1,8 @@
+#include "client/output/progress.h"
+
 #include <google/protobuf/util/json_util.h>
 
 #include "ballpiston/file/v1/progress.pb.h"
-#include "client/output/progress_line.h"
-#include "client/output/progress_reporter.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {
@@ -152,14 +152,6 @@ TEST(ProgressBar, HasThePointThatChangedLast) {
   EXPECT_THAT(finished.Text(), HasSubstr("tau_conditional 66.5"));
 }
 
-// The first line of the note is shorter than the bar; no part of the bar may remain.
-TEST(ProgressBar, ANoteClearsTheWholeBarFirst) {
-  Reported report(ProgressStyle::kBar);
-  report.reporter.OnSnapshot(Snapshot());
-  report.reporter.Note("a\nb");
-  EXPECT_THAT(report.Text(), EndsWith(absl::StrCat(kClear, "a\nb\n")));
-}
-
 TEST(ProgressBar, ANoteClearsTheMessageOfALostConnection) {
   Reported report(ProgressStyle::kBar);
   report.reporter.OnDisconnect(absl::UnavailableError("gone"), absl::Seconds(1.5));
@@ -235,13 +227,6 @@ TEST(ProgressJson, AStateIsAbsentUntilItIsKnownAndNotOlderThanTheProgress) {
   EXPECT_EQ(lines[1].state(), v1::EnsembleJob::RUNNING);
   EXPECT_EQ(lines[2].state(), v1::EnsembleJob::QUEUED);
   EXPECT_EQ(lines[3].state(), v1::EnsembleJob::RUNNING);
-}
-
-TEST(ProgressNone, PrintsNotesOnly) {
-  EXPECT_EQ(ReportOf(ProgressStyle::kNone), "");
-  Reported report(ProgressStyle::kNone);
-  report.reporter.Note("hint");
-  EXPECT_EQ(report.Text(), "hint\n");
 }
 
 }  // namespace

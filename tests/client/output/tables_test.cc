@@ -1,7 +1,7 @@
 // The texts of numbers, and the plan of eight points. transcripts/ shows the rest.
 #include "client/output/answers.h"
-#include "client/output/field_text.h"
 #include "client/output/number_text.h"
+#include "client/output/table.h"
 #include "tests/client/preamble.h"
 
 namespace ballpiston::client {

@@ -1,22 +1,41 @@
-#include "client/command/config_file.h"
+#include "client/command/settings.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <vector>
+#include <optional>
+#include <set>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
 #include "client/command/suggestion.h"
 #include "client/library/local_server.h"
 #include "client/library/quoted.h"
 
 namespace ballpiston::client {
 namespace {
+
+// ---- words ----
+
+bool IsHelp(absl::string_view name) { return name == "--help" || name == "-h"; }
+
+// --rho for --rho=0.5.
+std::string NameIn(const std::string& word) { return word.substr(0, word.find('=')); }
+
+const Flag* FlagNamed(const Verb& verb, const std::string& name) {
+  for (const Flag* flag : FlagsOf(verb)) {
+    const std::vector<std::string> names = absl::StrSplit(flag->name, ',', absl::SkipEmpty());
+    if (std::find(names.begin(), names.end(), name) != names.end()) return flag;
+  }
+  return nullptr;
+}
+
+// ---- the config file ----
 
 const Flag* FindFlag(const Verb& verb, const std::string& key) {
   for (const Flag* flag : FlagsOf(verb)) {
@@ -84,22 +103,8 @@ absl::Status CheckLines(const std::string& path) {
   return absl::OkStatus();
 }
 
-}  // namespace
-
-std::string FromEnvironment(const std::string& variable) {
-  const char* value = std::getenv(variable.c_str());
-  return value == nullptr ? "" : value;
-}
-
-std::string UsualConfig() {
-  std::string folder = FromEnvironment("XDG_CONFIG_HOME");
-  if (folder.empty() || folder[0] != '/') folder = HomeFolder() + "/.config";
-  std::error_code error;
-  const std::string path = folder + "/ballpiston/config.toml";
-  return std::filesystem::exists(path, error) ? path : "";
-}
-
-absl::Status ReadConfig(const std::string& path, const Verb& verb, const AddSetting& add) {
+// Adds first the settings below [VERB], then those for all verbs.
+absl::Status AddConfig(const std::string& path, const Verb& verb, Settings& settings) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
     return absl::InvalidArgumentError(absl::StrCat(path, " is a folder"));
@@ -120,10 +125,82 @@ absl::Status ReadConfig(const std::string& path, const Verb& verb, const AddSett
       }
       const Flag* const flag = FindFlag(verb, item.name);
       if (section != wanted || flag == nullptr) continue;
-      add(*flag, absl::StrJoin(item.inputs, ","), !section.empty());
+      const Source source = section.empty() ? Source::kFile : Source::kSection;
+      settings.try_emplace(flag, Setting{absl::StrJoin(item.inputs, ","), source});
     }
   }
   return absl::OkStatus();
+}
+
+}  // namespace
+
+SortedWords SortWords(const Verb& verb, const std::vector<std::string>& words) {
+  SortedWords sorted;
+  for (auto word = words.begin(); word != words.end(); ++word) {
+    if (*word == "--") {
+      sorted.arguments.insert(sorted.arguments.end(), word + 1, words.end());
+      break;
+    }
+    const std::string name = NameIn(*word);
+    const Flag* const flag = FlagNamed(verb, name);
+    if (flag == nullptr) {
+      sorted.has_help = sorted.has_help || IsHelp(name);
+      if (sorted.unknown_flag.empty() && absl::StartsWith(name, "-")) sorted.unknown_flag = name;
+      sorted.arguments.push_back(*word);
+      continue;
+    }
+    std::optional<std::string> value;
+    const auto next = word + 1;
+    if (name != *word) {
+      value = word->substr(name.size() + 1);
+      if (value->empty()) value.reset();
+    } else if (flag->value.IsSwitch()) {
+      value = "true";
+    } else if (next != words.end() && !absl::StartsWith(*next, "--") && !IsHelp(*next) &&
+               FlagNamed(verb, NameIn(*next)) == nullptr) {
+      value = *++word;
+    }
+    if (value) {
+      const auto [given, is_first] = sorted.flags.try_emplace(flag, *value);
+      if (is_first) continue;
+      absl::StrAppend(&given->second, ",", *value);
+      if (!flag->value.is_repeatable && sorted.repeated_flag == nullptr) {
+        sorted.repeated_flag = flag;
+      }
+    } else if (sorted.flag_without_value == nullptr) {
+      sorted.flag_without_value = flag;
+    }
+  }
+  return sorted;
+}
+
+absl::StatusOr<Settings> ReadSettings(const Verb& verb, const SortedWords& words) {
+  Settings settings;
+  for (const auto& [flag, text] : words.flags) settings[flag] = {text, Source::kCommandLine};
+  for (const Flag* flag : FlagsOf(verb)) {
+    std::string text = FromEnvironment(flag->variable);
+    if (!text.empty()) settings.try_emplace(flag, Setting{std::move(text), Source::kVariable});
+  }
+  std::string path = UsualConfig();
+  for (const auto& [flag, setting] : settings) {
+    if (LongName(*flag) == "--config") path = setting.text;
+  }
+  if (path.empty() || verb.act == &Help) return settings;
+  if (absl::Status bad = AddConfig(path, verb, settings); !bad.ok()) return bad;
+  return settings;
+}
+
+std::string FromEnvironment(const std::string& variable) {
+  const char* value = std::getenv(variable.c_str());
+  return value == nullptr ? "" : value;
+}
+
+std::string UsualConfig() {
+  std::string folder = FromEnvironment("XDG_CONFIG_HOME");
+  if (folder.empty() || folder[0] != '/') folder = HomeFolder() + "/.config";
+  std::error_code error;
+  const std::string path = folder + "/ballpiston/config.toml";
+  return std::filesystem::exists(path, error) ? path : "";
 }
 
 }  // namespace ballpiston::client

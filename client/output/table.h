@@ -1,10 +1,11 @@
-// The fields of messages as text, by their names in the proto: the cells of CSV and of tables.
+// Tables of the fields of messages: cells, rows of CSV, and aligned text.
 #pragma once
 
 #include <google/protobuf/message.h>
 
 #include <initializer_list>
 #include <optional>
+#include <ostream>
 #include <set>
 #include <string>
 #include <vector>
@@ -17,9 +18,9 @@ namespace ballpiston::client {
 using Cells = std::vector<std::string>;
 using NumberForm = std::string (*)(double);
 
-// `path`: the field's name, or names with dots between, as in progress.points_done. An enum value
-// is written as on the command line, a time as 2026-01-31T12:00:00Z. Empty if the message lacks the
-// field.
+// The field of a message as text. `path`: its name in the proto, or names with dots between, as in
+// progress.points_done. An enum value is written as on the command line, a time as
+// 2026-01-31T12:00:00Z. Empty if the message lacks the field.
 std::string FieldText(const google::protobuf::Message& message, const std::string& path,
                       NumberForm form = &ExactText);
 
@@ -60,5 +61,37 @@ Cells ParametersInCsv(const v1::Grid& grid);
 // The parameters of a table: all of them; those but rho and delta are its optional columns.
 Cells ParametersInTable();
 std::set<std::string> OptionalParameters();
+
+// ---- aligned text ----
+
+// Aligned columns of text. The first row is the header. Columns of numbers are aligned right.
+// Control characters are escaped, because texts of a server may change the terminal.
+class TextTable {
+ public:
+  // `left`: the titles of the columns that are aligned left. `optional`: those of the columns that
+  // are left out if all their cells are empty.
+  explicit TextTable(std::vector<std::string> titles, std::set<std::string> left = {},
+                     const std::set<std::string>& optional = {});
+
+  // One text for each column.
+  void AddRow(std::vector<std::string> row);
+  // A text across all columns; the columns' widths do not depend on it.
+  void AddLine(const std::string& text);
+  // Indents each line by `indent` blanks. No line ends with blanks.
+  void Print(std::ostream& out, size_t indent = 0) const;
+
+ private:
+  struct Row {
+    std::vector<std::string> cells;
+    std::string line;  // used if there are no cells
+  };
+
+  std::string Line(const Row& row, size_t indent) const;
+
+  const std::set<std::string> left_;
+  std::vector<size_t> widths_;
+  std::vector<bool> is_shown_;
+  std::vector<Row> rows_;
+};
 
 }  // namespace ballpiston::client

@@ -1,15 +1,46 @@
-// A file that appears whole: a reader never sees half of it, and a failure keeps the file that was
-// there. A pipe or a device is written to directly.
+// Files that the program writes, its standard output included.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <ostream>
+#include <streambuf>
 #include <string>
 
 #include "absl/status/status.h"
-#include "client/output/standard_output.h"
 
 namespace ballpiston::client {
+
+// A stream to a file that stores why a write failed, which std::ofstream and std::cout do not.
+// Needs SIGPIPE ignored. Not thread-safe.
+class FileStream : public std::ostream {
+ public:
+  explicit FileStream(int descriptor) : std::ostream(nullptr), buffer_(descriptor) {
+    rdbuf(&buffer_);
+  }
+
+  // Flushes. Returns errno of the first write that failed, or 0.
+  int Finish();
+
+ private:
+  class Buffer : public std::streambuf {
+   public:
+    explicit Buffer(int descriptor);
+
+    int error() const { return error_; }
+
+   protected:
+    int_type overflow(int_type c) override;
+    int sync() override;
+
+   private:
+    const int descriptor_;
+    int error_ = 0;
+    std::array<char, 1 << 16> bytes_;
+  };
+
+  Buffer buffer_;
+};
 
 // OK if a file can be created there, as far as that can be seen without creating it. Errors are
 // those of NewFile::Keep.
@@ -19,6 +50,8 @@ absl::Status CheckNewFile(const std::string& flag, const std::string& path);
 // destructors. No other thread can make or keep a file afterwards.
 void RemoveUnfinishedFiles();
 
+// A file that appears whole: a reader never sees half of it, and a failure keeps the file that was
+// there. A pipe or a device is written to directly.
 class NewFile {
  public:
   // `flag` is the flag that named the path, for messages.
@@ -42,12 +75,10 @@ class NewFile {
   int Open();
 
   const std::string flag_, path_;
-  std::filesystem::path file_;  // `path_` without symbolic links
-  std::filesystem::path part_;  // hidden beside it, until Keep
-  int descriptor_;
-  int open_error_ = 0;  // errno
-  FileDescriptorBuffer buffer_;
-  std::ostream out_{nullptr};
+  std::filesystem::path file_;         // `path_` without symbolic links
+  std::filesystem::path part_;         // hidden beside it, until Keep
+  const int descriptor_, open_error_;  // the second one is errno, or 0
+  FileStream out_;
 };
 
 }  // namespace ballpiston::client

@@ -1,6 +1,6 @@
 // Flags that exclude each other, from different sources: the command line, the environment, the
 // config file. transcripts/settings.txt shows the order of the sources, and what a file may hold.
-#include "client/command/config_file.h"
+#include "client/command/settings.h"
 
 #include "client/command/follow_job.h"
 #include "tests/client/preamble.h"
@@ -8,7 +8,7 @@
 namespace ballpiston::client {
 namespace {
 
-class ConfigFileTest : public ::testing::Test {
+class SettingsTest : public ::testing::Test {
  protected:
   static Options Read(const std::string& words) {
     const auto line = ParseCommandLine(absl::StrSplit(words, ' '));
@@ -22,7 +22,7 @@ class ConfigFileTest : public ::testing::Test {
   const EmptyHome home_;
 };
 
-TEST_F(ConfigFileTest, RelativeHomeIsReplacedByTheUsersEntry) {
+TEST_F(SettingsTest, RelativeHomeIsReplacedByTheUsersEntry) {
   const std::string home = std::filesystem::relative(home_.File(""));
   std::filesystem::create_directories(home + "/.config/ballpiston");
   WriteFile(home + "/.config/ballpiston/config.toml", "");
@@ -30,7 +30,7 @@ TEST_F(ConfigFileTest, RelativeHomeIsReplacedByTheUsersEntry) {
   EXPECT_THAT(UsualConfig(), Not(StartsWith(home)));
 }
 
-TEST_F(ConfigFileTest, AFlagReplacesWeakerSourcesOfItsRivals) {
+TEST_F(SettingsTest, AFlagReplacesWeakerSourcesOfItsRivals) {
   home_.WriteConfig("token-file = \"file\"\nquiet = true\nprogress = \"bar\"\n");
   const ScopedVariable token("BALLPISTON_TOKEN", "secret");
   const Options verbose = Read("watch abc --verbose");
@@ -45,7 +45,7 @@ TEST_F(ConfigFileTest, AFlagReplacesWeakerSourcesOfItsRivals) {
 }
 
 // Only of one source do a tolerance and a budget go together.
-TEST_F(ConfigFileTest, ATargetReplacesThatOfAWeakerSource) {
+TEST_F(SettingsTest, ATargetReplacesThatOfAWeakerSource) {
   home_.WriteConfig("[run]\nsamples = 5\n");
   EXPECT_EQ(Target("run first-hit --budget 3"), "budget { seconds: 3 }");
   home_.WriteConfig("[run]\ntolerance = 0.1\nbudget = 3\n");
@@ -54,21 +54,21 @@ TEST_F(ConfigFileTest, ATargetReplacesThatOfAWeakerSource) {
   EXPECT_EQ(Target("run first-hit --budget 60"), "budget { seconds: 60 }");
 }
 
-TEST_F(ConfigFileTest, TargetsOfOneSourceThatExcludeEachOtherAreRefused) {
+TEST_F(SettingsTest, TargetsOfOneSourceThatExcludeEachOtherAreRefused) {
   home_.WriteConfig("[run]\nsamples = 5\ncollisions = 3\n");
   EXPECT_THAT(ParseCommandLine({"run", "first-hit"}).status(),
               StatusIs(absl::StatusCode::kInvalidArgument,
                        HasSubstr("--samples and --collisions in the config file exclude")));
 }
 
-TEST_F(ConfigFileTest, WhatIsOffOrReplacedReplacesNothing) {
+TEST_F(SettingsTest, WhatIsOffOrReplacedReplacesNothing) {
   home_.WriteConfig("verbose = true\nprogress = \"json\"\n");
   EXPECT_EQ(Read("watch abc --quiet=false").verbosity, Verbosity::kVerbose);
   const ScopedVariable quiet("BALLPISTON_QUIET", "1");
   EXPECT_EQ(StyleOf(Read("watch abc --verbose")), ProgressStyle::kJson);
 }
 
-TEST_F(ConfigFileTest, ProgressOfAStrongerSourceIsShownInSpiteOfQuiet) {
+TEST_F(SettingsTest, ProgressOfAStrongerSourceIsShownInSpiteOfQuiet) {
   home_.WriteConfig("quiet = true\n");
   const ScopedVariable progress("BALLPISTON_PROGRESS", "json");
   EXPECT_EQ(StyleOf(Read("watch abc")), ProgressStyle::kJson);

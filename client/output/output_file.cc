@@ -1,4 +1,4 @@
-#include "client/output/new_file.h"
+#include "client/output/output_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -42,6 +42,32 @@ absl::Status CannotWrite(const std::string& flag, const std::string& path,
 
 }  // namespace
 
+FileStream::Buffer::Buffer(int descriptor) : descriptor_(descriptor) {
+  setp(bytes_.data(), bytes_.data() + bytes_.size());
+}
+
+FileStream::Buffer::int_type FileStream::Buffer::overflow(int_type c) {
+  if (sync() != 0) return traits_type::eof();
+  if (!traits_type::eq_int_type(c, traits_type::eof())) sputc(traits_type::to_char_type(c));
+  return traits_type::not_eof(c);
+}
+
+int FileStream::Buffer::sync() {
+  const char* position = pbase();
+  while (error_ == 0 && position < pptr()) {
+    const ssize_t written = ::write(descriptor_, position, static_cast<size_t>(pptr() - position));
+    if (written >= 0) position += written;
+    if (written < 0 && errno != EINTR) error_ = errno;
+  }
+  setp(bytes_.data(), bytes_.data() + bytes_.size());
+  return error_ == 0 ? 0 : -1;
+}
+
+int FileStream::Finish() {
+  flush();
+  return buffer_.error();
+}
+
 absl::Status CheckNewFile(const std::string& flag, const std::string& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) return CannotWrite(flag, path, "this is a folder");
@@ -59,10 +85,11 @@ void RemoveUnfinishedFiles() {
 }
 
 NewFile::NewFile(std::string flag, std::string path)
-    : flag_(std::move(flag)), path_(std::move(path)), descriptor_(Open()), buffer_(descriptor_) {
-  open_error_ = descriptor_ < 0 ? errno : 0;
-  out_.rdbuf(&buffer_);
-}
+    : flag_(std::move(flag)),
+      path_(std::move(path)),
+      descriptor_(Open()),
+      open_error_(descriptor_ < 0 ? errno : 0),
+      out_(descriptor_) {}
 
 // A pipe or a device itself, else a new file beside the old one that nobody else has made, with the
 // permissions that the complete file will have.
@@ -96,8 +123,8 @@ NewFile::~NewFile() {
 
 absl::Status NewFile::Flush() {
   if (open_error_ != 0) return CannotWrite(flag_, path_, std::strerror(open_error_));
-  out_.flush();
-  if (buffer_.error() != 0) return CannotWrite(flag_, path_, std::strerror(buffer_.error()));
+  const int error = out_.Finish();
+  if (error != 0) return CannotWrite(flag_, path_, std::strerror(error));
   if (!out_) return CannotWrite(flag_, path_, "its content could not be made");
   return absl::OkStatus();
 }
