@@ -105,7 +105,7 @@ TEST(ServerFlags, AServerThatCannotStartSaysWhyAndExits) {
   EXPECT_THAT(denied.err, HasSubstr("is not writable"));
   EXPECT_THAT(Refusal({"--listen=0.0.0.0:0"}), HasSubstr("give --tls-certificate, --tls-key"));
   for (const std::string metrics : {"0.0.0.0:9090", "unix:/tmp/metrics", "9090"}) {
-    EXPECT_THAT(Refusal({"--metrics-listen", metrics}),
+    EXPECT_THAT(Refusal({"--metrics-listen", metrics, "--idle-exit-seconds=0.1"}),
                 HasSubstr("--metrics-listen=" + metrics + " is not a loopback address"));
   }
 }
