@@ -22,8 +22,8 @@ double Overhead(const ServerProcess& server, const client::Client& client, const
   const double before = work(), start = server.ProcessorSeconds();
   double more = 0;
   AwaitThat([&] {
-    // Without a pause these requests take a tenth of the processor time.
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    // The pause is long because these requests take processor time, too.
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds / 20));
     more = work() - before;
     return more >= seconds;
   });
