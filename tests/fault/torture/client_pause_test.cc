@@ -28,7 +28,15 @@ TEST(ClientLibrary, WatchesAgainSoonAfterARestart) {
   options.give_up_after = absl::FromChrono(kPatience);
   auto watch =
       std::async(std::launch::async, [&] { return client.Watch(job.name(), callbacks, options); });
-  AwaitThat([&] { return reports > 0; });
+  // False if the watch has ended.
+  const auto await_reports = [&](int count) {
+    const auto has_ended = [&] {
+      return watch.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    };
+    AwaitThat([&] { return reports >= count || has_ended(); });
+    return reports >= count;
+  };
+  await_reports(1);
   double longest = 0;
   for (int i = 0; i < Size(2, 20); ++i) {
     const int before = reports;
@@ -36,7 +44,8 @@ TEST(ClientLibrary, WatchesAgainSoonAfterARestart) {
     server.AwaitEnd();
     server.Start();
     const auto ready = Clock::now();
-    AwaitThat([&] { return reports > before; });
+    EXPECT_TRUE(await_reports(before + 1)) << "the watch has ended";
+    if (testing::Test::HasFailure()) break;
     longest = std::max(longest, std::chrono::duration<double>(Clock::now() - ready).count());
     findings.Count("restarts");
   }
