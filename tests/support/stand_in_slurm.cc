@@ -19,7 +19,8 @@ tasks() { grep -lszx "STAND_IN_ARRAY=$folder/$name" /proc/[0-9]*/environ; }
 )sh";
 
 constexpr char kSbatch[] = R"sh(
-export STAND_IN_ARRAY="$folder/$name"
+# Starts itself again, so that tasks have the name from their first moment on.
+[ -n "$STAND_IN_ARRAY" ] || STAND_IN_ARRAY=$folder/$name exec "$0" "$@"
 for SLURM_ARRAY_TASK_ID in $(seq 0 "$last"); do
   export SLURM_ARRAY_TASK_ID
   echo "$name" >>"$folder/started"
