@@ -98,7 +98,11 @@ TEST_F(ServerTest, ThePrivateServerIsStartedFoundAndStopped) {
     EXPECT_THAT(none.err, HasSubstr(message));
     EXPECT_FALSE(fs::exists(State("server.log")));  // none was started
   }
-  const ProcessResult started = Server("start", {"--", "--idle-exit-seconds", "1000"});
+  // Its output ends when the command ends: the server does not keep the pipe open.
+  ProcessOptions start = ClientCommand(home_, Split("server start -- --idle-exit-seconds 1000"));
+  start.command.insert(start.command.begin(),
+                       {"bash", "-o", "pipefail", "-c", "\"$@\" 2>&1 | cat", "bash"});
+  const ProcessResult started = RunProgram(start);
   EXPECT_THAT(started, ExitsWith(0));
   EXPECT_EQ(started.out, "unix:" + State("server.socket") + "\n");
   const ProcessResult again = Server("start");

@@ -112,6 +112,10 @@ TEST_F(WebTest, ErrorsHaveTheServersCodesReasonsAndViolations) {
   const httplib::Result long_one = Post("GetEnsembleJob", std::string(17 << 20, ' '));
   EXPECT_EQ(long_one->status, 413);
   EXPECT_THAT(long_one->body, HasSubstr(R"("code":"resource_exhausted")"));
+  const httplib::Result no_method =
+      http_->Put("/a/b", {{"Authorization", "Bearer " + token_}}, "{}", kUnary);
+  EXPECT_EQ(no_method->status, 404);
+  EXPECT_THAT(no_method->body, HasSubstr(R"("code":"unimplemented")"));
 }
 
 TEST_F(WebTest, CallsNeedTheTokenAndThisPagesOriginAndHost) {
