@@ -14,7 +14,6 @@
 #
 # For tests of failures, on a running cluster:
 #   kill-controller DIR      Kills slurmctld at once: its saved state may be 5 s old.
-#   stop-controller DIR      Ends slurmctld cleanly: it saves its state.
 #   start-controller DIR     Starts slurmctld again, and waits until it answers.
 #   pause-controller DIR     Stops slurmctld's process (SIGSTOP): connections open, but get no answer.
 #   resume-controller DIR
@@ -362,7 +361,6 @@ case $verb in
   start) start "$@" ;;
   stop) stop ;;
   kill-controller) end slurmctld KILL ;;
-  stop-controller) end slurmctld TERM ;;
   start-controller) start_controller ;;
   pause-controller) signal slurmctld STOP ;;
   resume-controller) signal slurmctld CONT ;;

@@ -10,7 +10,7 @@
 #include "tests/client/program.h"
 #include "tests/support/message_text.h"
 #include "tests/support/preamble.h"
-#include "tests/support/scoped_variable.h"
+#include "tests/support/scoped.h"
 
 namespace ballpiston::client {
 

@@ -11,7 +11,7 @@
 #include "gtest/gtest.h"
 #include "tests/client/fake_server.h"
 #include "tests/support/files.h"
-#include "tests/support/scoped_variable.h"
+#include "tests/support/scoped.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::client {

@@ -10,7 +10,6 @@ class FigureTest : public ::testing::Test {
   Words Draw(const std::string& flags) const {
     return Joined({Split("figure mean-free-time --delta 0.2,0.1 " + flags), {"--out", folder_}});
   }
-  ProcessOptions Cell() const { return server_.Command({"figure", "cell", "--out", folder_}); }
   std::string File(const std::string& name) const { return folder_ + "/" + name; }
 
   const TestServer server_;
@@ -31,46 +30,23 @@ TEST_F(FigureTest, LeavesDataAndPictures) {
   }
 }
 
-TEST_F(FigureTest, MissingProgramsAndPackagesAreNamed) {
-  const std::string modules = server_.folder().File("modules");
-  fs::create_directory(modules);
-  WriteFile(modules + "/matplotlib.py", "raise ModuleNotFoundError(name='matplotlib')\n");
-  const struct {
-    std::string variable, value, message;
-  } cases[] = {
-      {"BALLPISTON_PYTHON", "/no/python3", "install python3-ballpiston and python3-matplotlib"},
-      {"PYTHONPATH", modules, "cannot import matplotlib; install"}};
-  for (const auto& [variable, value, message] : cases) {
-    ProcessOptions options = Cell();
-    options.environment[variable] = value;
-    const ProcessResult result = RunProgram(options);
-    EXPECT_THAT(result, ExitsWith(2));
-    EXPECT_THAT(result.err, HasSubstr(message));
-  }
-}
-
-TEST_F(FigureTest, APictureThatCannotBeWrittenIsAnError) {
-  fs::create_directories(File("cell.png"));
-  EXPECT_THAT(RunProgram(Cell()), ExitsWith(2));
-}
-
 // The jobs take years.
 TEST_F(FigureTest, AnInterruptionCancelsNothingAndTheSameCommandGoesOn) {
   const Words command = Draw("--samples 1000000000000 --progress json");
   for (int attempt = 0; attempt < 2; ++attempt) {
-    const auto figure = server_.StartClient(command);
-    ASSERT_TRUE(figure->WaitForErr("RUNNING"));
-    figure->Signal(SIGTERM);
-    EXPECT_THAT(figure->Wait(), ExitsWith(130));
+    Process figure(server_.Command(command));
+    ASSERT_TRUE(figure.WaitForErr("RUNNING"));
+    figure.Signal(SIGTERM);
+    EXPECT_THAT(figure.Wait(), ExitsWith(130));
     ASSERT_EQ(server_.List().jobs_size(), 1);
     EXPECT_EQ(server_.List().jobs(0).state(), v1::EnsembleJob::RUNNING);
   }
   // A job that was cancelled is made again.
   EXPECT_THAT(server_.Client({"cancel", server_.List().jobs().at(0).name()}), ExitsWith(0));
-  const auto figure = server_.StartClient(command);
-  ASSERT_TRUE(figure->WaitForErr("RUNNING"));
-  figure->Signal(SIGINT);
-  EXPECT_THAT(figure->Wait(), ExitsWith(130));
+  Process figure(server_.Command(command));
+  ASSERT_TRUE(figure.WaitForErr("RUNNING"));
+  figure.Signal(SIGINT);
+  EXPECT_THAT(figure.Wait(), ExitsWith(130));
   EXPECT_EQ(server_.List().jobs_size(), 2);
 }
 

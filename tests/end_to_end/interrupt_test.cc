@@ -29,11 +29,11 @@ class InterruptTest : public ::testing::Test {
 
 TEST_F(InterruptTest, EachSignalEndsTheClientAndTheJobGoesOn) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    const auto run = server_.StartClient(EndlessRun("--progress json --format csv"));
-    const std::string line = run->WaitForErrLine([](const std::string&) { return true; });
+    Process run(server_.Command(EndlessRun("--progress json --format csv")));
+    const std::string line = run.WaitForErrLine([](const std::string&) { return true; });
     const std::string job = FromJson<file::v1::WatchProgress>(line).job();
-    run->Signal(signal);
-    const ProcessResult result = run->Wait();
+    run.Signal(signal);
+    const ProcessResult result = run.Wait();
     EXPECT_THAT(result, ExitsWith(130));
     EXPECT_EQ(result.out, "");
     const std::string flags = job + " --server ";  // then the quoted address
@@ -68,11 +68,11 @@ TEST_F(InterruptTest, OnATerminalTheMessageReplacesTheBar) {
 TEST_F(InterruptTest, DuringASubmissionTheMessageHasTheRequestId) {
   const std::string id = "123e4567-e89b-12d3-a456-426614174000";
   server_.Signal(SIGSTOP);
-  const auto submit =
-      server_.StartClient(Joined({{"submit", "--verbose", "--request-id", id}, kQuickQuestion}));
-  ASSERT_TRUE(submit->WaitForErr("request id " + id + "\n"));
-  submit->Signal(SIGINT);
-  const ProcessResult result = submit->Wait();
+  Process submit(
+      server_.Command(Joined({{"submit", "--verbose", "--request-id", id}, kQuickQuestion})));
+  ASSERT_TRUE(submit.WaitForErr("request id " + id + "\n"));
+  submit.Signal(SIGINT);
+  const ProcessResult result = submit.Wait();
   server_.Signal(SIGCONT);
   EXPECT_THAT(result, ExitsWith(130));
   EXPECT_EQ(result.out, "");

@@ -1,6 +1,6 @@
-// Jobs by the command line: submit, watch, result, list, and files of questions and results. Two
+// Jobs by the command line: files of questions and results, and errors of the system. Two
 // tests end the output early: the reader of a pipe leaves, and the disk is full. Below: jobs whose
-// results expire, and jobs whose model the service chooses.
+// results expire, and a job with a budget.
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
@@ -22,22 +22,6 @@ class JobTest : public ::testing::Test {
   const TestServer server_;
 };
 
-TEST_F(JobTest, SubmitPrintsTheNameThatWatchAndResultTake) {
-  const ProcessResult submitted = server_.Client(Joined({{"submit"}, kQuickQuestion}));
-  ASSERT_THAT(submitted, ExitsWith(0));
-  EXPECT_THAT(submitted.out, ::testing::MatchesRegex("ensembleJobs/[-_A-Za-z0-9]+\n"));
-  EXPECT_EQ(submitted.err, "");
-  const std::string name = submitted.out.substr(0, submitted.out.size() - 1);
-  const std::string id = name.substr(name.find('/') + 1);
-  EXPECT_THAT(server_.Client({"watch", name}), ExitsWith(0));
-  const ProcessResult by_name = server_.Client({"result", name});
-  EXPECT_THAT(by_name, ExitsWith(0));
-  EXPECT_EQ(by_name.out, server_.Client({"result", id}).out);
-  EXPECT_EQ(by_name.err, "");  // not a terminal: no progress
-  const ProcessResult list = server_.Client({"list", "--format", "csv"});
-  EXPECT_THAT(list.out, HasSubstr(name + ",first-hit,succeeded,2,2,4000,"));
-}
-
 // The commands with which docs/answers.md verifies a file.
 TEST_F(JobTest, TheQuestionOfASavedFileGivesTheSamePointsOnAnotherServer) {
   server_.Client(Joined({{"run"}, kQuickQuestion, {"--save", File("a.json")}}));
@@ -52,15 +36,29 @@ TEST_F(JobTest, TheQuestionOfASavedFileGivesTheSamePointsOnAnotherServer) {
   EXPECT_EQ(PointsOf(Contents(File("b.json"))), PointsOf(Contents(File("a.json"))));
 }
 
-TEST_F(JobTest, ArraysNeedThePythonPackage) {
-  ProcessOptions run =
-      server_.Command(Joined({{"run"}, kQuickQuestion, {"--save", File("a.npz")}}));
-  run.environment["BALLPISTON_PYTHON"] = "false";
-  const ProcessResult refused = RunProgram(run);
-  EXPECT_THAT(refused, ExitsWith(2));
-  EXPECT_THAT(refused.err, HasSubstr("install python3-ballpiston and python3-numpy"));
+// Before a job is submitted.
+TEST_F(JobTest, MissingProgramsAndPackagesOfPythonAreNamed) {
+  const std::string modules = File("modules"), arrays = File("a.npz");
+  fs::create_directory(modules);
+  WriteFile(modules + "/matplotlib.py", "raise ModuleNotFoundError(name='matplotlib')\n");
+  const Words save = Joined({{"run"}, kQuickQuestion, {"--save", arrays}});
+  const Words cell = {"figure", "cell", "--out", File("figure")};
+  const struct {
+    Words words;
+    std::string variable, value, message;
+  } cases[] = {
+      {save, "BALLPISTON_PYTHON", "false", "install python3-ballpiston and python3-numpy"},
+      {cell, "BALLPISTON_PYTHON", "/no/python3", "python3-ballpiston and python3-matplotlib"},
+      {cell, "PYTHONPATH", modules, "cannot import matplotlib; install"}};
+  for (const auto& [words, variable, value, message] : cases) {
+    ProcessOptions options = server_.Command(words);
+    options.environment[variable] = value;
+    const ProcessResult refused = RunProgram(options);
+    EXPECT_THAT(refused, ExitsWith(2));
+    EXPECT_THAT(refused.err, HasSubstr(message));
+  }
   EXPECT_EQ(server_.List().jobs_size(), 0);
-  EXPECT_FALSE(fs::exists(File("a.npz")));
+  EXPECT_FALSE(fs::exists(arrays));
 }
 
 // The reader takes one line and ends.
@@ -114,18 +112,6 @@ TEST_F(JobTest, AQuestionThatIsTooLargeToBeSentIsAnError) {
   EXPECT_THAT(refused.err, HasSubstr("at most 4194304"));
 }
 
-TEST_F(JobTest, AnInterruptionEndsATraceInTheServerToo) {
-  for (const int signal : {SIGINT, SIGTERM}) {
-    ProcessOptions options = server_.Command(Split("trace --rho 0.53 --delta 0.2 --events 1e6"));
-    options.command.insert(options.command.begin(), {"sh", "-c", "exec \"$@\" >/dev/null", "sh"});
-    Process trace(options);
-    AwaitThat([this] { return server_.Status().streams() == 1; });
-    trace.Signal(signal);
-    EXPECT_THAT(trace.Wait(), ExitsWith(130));
-    AwaitThat([this] { return server_.Status().streams() == 0; });
-  }
-}
-
 // ---- a store that is bounded: the oldest results expire, and can be computed again ----
 //
 // tests/server/book/stored_limits_test.cc tests which results stay.
@@ -155,47 +141,22 @@ TEST(Expiry, TheSameCommandComputesExpiredResultsAgain) {
   }
 }
 
-// ---- the choice of the model is left to the service ----
-//
-// tests/core/model_choice/ladder_test.cc tests the choice itself.
-
-// The first point of an answer.
-v1::PointResult PointOf(const TestServer& server, const std::string& question) {
-  return server.Json<file::v1::SavedResult>(Split("run " + question)).points().at(0);
-}
-
-// The first estimate, which has this name and a positive value.
-v1::Estimate EstimateOf(const v1::PointResult& point, const std::string& name) {
-  const v1::Estimate& estimate = point.estimates().at(0);
-  EXPECT_EQ(estimate.name(), name);
-  EXPECT_GT(estimate.value(), 0);
-  return estimate;
-}
-
 // The result holds the number of samples that the budget permitted. A job with this number of
 // samples gives the same values.
 TEST(Budget, ItsNumberOfSamplesGivesTheSameNumbersAgain) {
   const TestServer server;
   const std::string question =
       "first-hit --rho 0.5296 --delta 0.2 --epsilon 0.1 --exponent 1 --seed 4";
-  const v1::PointResult answer = PointOf(server, question + " --budget 0.05");
-  const v1::PointResult again =
-      PointOf(server, absl::StrFormat("%s --samples %.0f", question, answer.samples()));
+  const auto answer = [&](const std::string& target) {
+    return server.Json<file::v1::SavedResult>(Split("run " + question + target)).points().at(0);
+  };
+  const v1::PointResult first = answer(" --budget 0.05");
+  const v1::PointResult again = answer(absl::StrFormat(" --samples %.0f", first.samples()));
+  EXPECT_EQ(first.estimates(0).name(), "mean_hit_time");
   // The blocks differ, so the same samples are summed in another order.
-  const double value = EstimateOf(answer, "mean_hit_time").value();
-  EXPECT_NEAR(EstimateOf(again, "mean_hit_time").value(), value, 1e-12 * value);
-}
-
-TEST(Spectrum, AnswersWhereItsStatedErrorIsWithinTheTolerance) {
-  const TestServer server;
-  const std::string question = "energy-relaxation --rho 0.53 --delta 0.01 --tolerance 0.003";
-  const std::string reason = "the limit's error, up to 0.00059, is within the tolerance";
-  EXPECT_THAT(server.Client(Split("plan " + question)).out, HasSubstr(reason));
-  const v1::PointResult answer = PointOf(server, question);
-  EXPECT_EQ(answer.model(), v1::EnsembleSpec::SPECTRUM);
-  EXPECT_EQ(answer.reason(), reason);
-  const v1::Estimate time = EstimateOf(answer, "relaxation_time");
-  EXPECT_NEAR(time.model_error() / time.value(), 0.00059, 5e-6);
+  const double value = first.estimates(0).value();
+  EXPECT_GT(value, 0);
+  EXPECT_NEAR(again.estimates(0).value(), value, 1e-12 * value);
 }
 
 }  // namespace

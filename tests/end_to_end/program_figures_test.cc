@@ -24,13 +24,13 @@ TEST_F(ProgramFigure, SpeedAccuracyHasDataAndPicture) {
   EXPECT_THAT(result.out, HasSubstr(figure_ + "/speed-accuracy.svg\n"));
 }
 
-// The client's standard error is also the program's: Wait returns when both have ended.
 TEST_F(ProgramFigure, AnInterruptionEndsTheProgramToo) {
   for (const int signal : {SIGINT, SIGTERM}) {
     Process client(Command("speed-accuracy", "--seconds 60 --progress bar"));
     ASSERT_TRUE(client.WaitForErr("mean-free-time"));
     client.Signal(signal);
     EXPECT_THAT(client.Wait(), ExitsWith(130));
+    AwaitThat([] { return ProcessesWith(BuildPath("bin/method_comparison")).empty(); });
   }
 }
 

@@ -25,10 +25,6 @@ ProcessResult TestServer::Client(Words words) const {
   return RunProgram(Command(std::move(words)));
 }
 
-std::unique_ptr<Process> TestServer::StartClient(Words words) const {
-  return std::make_unique<Process>(Command(std::move(words)));
-}
-
 std::string TestServer::Output(const Words& words) const {
   const ProcessResult result = Client(words);
   if (result.exit_code == 0) return result.out;

@@ -54,7 +54,6 @@ class TestServer : public ServerProcess {
 
   ProcessOptions Command(Words words) const;
   ProcessResult Client(Words words) const;
-  std::unique_ptr<Process> StartClient(Words words) const;
   // The output of the client with `--format json`.
   template <typename Message>
   Message Json(const Words& words) const {

@@ -25,8 +25,8 @@ class Security : public ::testing::Test {
 
   // A new token of this principal and role, which is also in the file `token_NAME`.
   std::string NewToken(const std::string& name, const std::string& role) {
-    const ProcessResult made =
-        RunServer(home_, {"--access-file", home_.File("access"), "--new-token", name + ":" + role});
+    const ProcessResult made = RunProgram(ClientCommand(
+        home_, {"server", "token", name + ":" + role, "--access-file", home_.File("access")}));
     EXPECT_THAT(made, ExitsWith(0));
     EXPECT_EQ(made.err, "");
     Write("token_" + name, made.out);

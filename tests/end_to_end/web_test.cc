@@ -20,15 +20,16 @@ std::string Envelope(const std::string& json) {
 class WebTest : public ::testing::Test {
  protected:
   WebTest() {
-    web_ = server_.StartClient({"web"});
+    web_.emplace(server_.Command({"web"}));
     if (!web_->WaitForOut("\n")) throw std::runtime_error(web_->Output());
     const std::string line = web_->Output();
-    const std::vector<std::string> address =
+    const std::vector<std::string> parts =
         absl::StrSplit(line.substr(0, line.find('\n')), "/#token=");
-    http_.emplace(address[0]);
+    host_ = parts[0];
+    address_ = host_.substr(host_.rfind('/') + 1);
+    token_ = parts[1];
+    http_.emplace(host_);
     http_->set_read_timeout(kPatience);
-    host_ = address[0];
-    token_ = address[1];
   }
 
   // `method`: of the jobs' service, or a whole path.
@@ -40,9 +41,10 @@ class WebTest : public ::testing::Test {
   }
 
   TestServer server_;
-  std::unique_ptr<Process> web_;
+  std::optional<Process> web_;
   std::optional<httplib::Client> http_;
-  std::string host_, token_;
+  std::string host_, address_;  // http://ADDRESS, ADDRESS
+  std::string token_;
 };
 
 TEST_F(WebTest, ServesThePageWithSecurityHeaders) {
@@ -120,10 +122,9 @@ TEST_F(WebTest, CallsNeedTheTokenAndThisPagesOriginAndHost) {
   const auto call = [this](const httplib::Headers& headers) {
     return Post("ListEnsembleJobs", "{}", headers);
   };
-  const std::string address = host_.substr(host_.rfind('/') + 1);
-  const std::string localhost = "localhost" + address.substr(address.find(':'));
+  const std::string localhost = "localhost" + address_.substr(address_.find(':'));
   EXPECT_EQ(call({})->status, 200);  // a program that sends no origin
-  for (const std::string& host : {address, localhost}) {
+  for (const std::string& host : {address_, localhost}) {
     EXPECT_EQ(call({{"Host", host}, {"Origin", "http://" + host}})->status, 200);
   }
   for (const std::string& authorization :
@@ -134,24 +135,23 @@ TEST_F(WebTest, CallsNeedTheTokenAndThisPagesOriginAndHost) {
     EXPECT_THAT(refused->body, Not(HasSubstr(token_)));
   }
   for (const std::string& origin : {std::string("http://evil.example"), std::string("null"),
-                                    "https://" + address, host_ + ".evil.example"}) {
+                                    "https://" + address_, host_ + ".evil.example"}) {
     const httplib::Result refused = call({{"Origin", origin}});
     EXPECT_EQ(refused->status, 403) << origin;
     EXPECT_THAT(refused->body, HasSubstr(origin));
   }
   for (const std::string& host : {std::string("evil.example"), std::string("127.0.0.1"),
-                                  std::string("127.0.0.1:80"), address + ".evil.example"}) {
+                                  std::string("127.0.0.1:80"), address_ + ".evil.example"}) {
     const httplib::Result refused = call({{"Host", host}});
     EXPECT_EQ(refused->status, 403) << host;
-    EXPECT_THAT(refused->body, HasSubstr("permitted: " + address + ", " + localhost));
+    EXPECT_THAT(refused->body, HasSubstr("permitted: " + address_ + ", " + localhost));
     EXPECT_EQ(http_->Get("/", {{"Host", host}})->status, 403);
   }
 }
 
 // The body never arrives. The answer does, and then the connection ends.
 TEST_F(WebTest, ARefusedRequestIsAnsweredBeforeItsBodyIsRead) {
-  const std::string address = host_.substr(host_.rfind('/') + 1);
-  const std::string host = "Host: " + address + "\r\n", length = "Content-Length: 9\r\n";
+  const std::string host = "Host: " + address_ + "\r\n", length = "Content-Length: 9\r\n";
   const std::string token = "Authorization: Bearer " + token_ + "\r\n";
   const std::pair<std::string, int> rows[] = {
       {"Host: evil.example\r\n" + token + length, 403},
@@ -162,23 +162,11 @@ TEST_F(WebTest, ARefusedRequestIsAnsweredBeforeItsBodyIsRead) {
       {host + token + length + "Content-Encoding: gzip\r\n", 400}};
   for (const std::string method : {"POST", "PUT"}) {
     for (const auto& [headers, status] : rows) {
-      server::Connection connection(address);
+      server::Connection connection(address_);
       connection.Send(method + " / HTTP/1.1\r\n" + headers + "\r\n");
       EXPECT_THAT(connection.ReadToTheEnd(), StartsWith(absl::StrCat("HTTP/1.1 ", status)));
     }
   }
-}
-
-TEST_F(WebTest, ReconnectsToAServerThatWasRestarted) {
-  const std::string method = "ListEnsembleJobs";
-  ASSERT_EQ(Post(method, "{}")->status, 200);
-  server_.KillHard();
-  const httplib::Result gone = Post(method, "{}");
-  EXPECT_EQ(gone->status, 503);
-  EXPECT_THAT(gone->body, HasSubstr("no answer from the server"));
-  server_.Start();
-  // The channel pauses before it connects again.
-  AwaitThat([&] { return Post(method, "{}")->status == 200; });
 }
 
 // Streams have their own limit, so the other calls find a thread. When a reader disconnects its
@@ -225,18 +213,15 @@ TEST_F(WebTest, AStreamEndsWhenItsReaderDisconnects) {
 
 TEST(WebErrors, NameAPortInUseAndAMissingProgram) {
   const TestServer server;
-  const ProcessResult high = server.Client({"web", "--port", "70000"});
-  EXPECT_THAT(high, ExitsWith(2));
-  EXPECT_THAT(high.err, HasSubstr("--port: is 70000; permitted: 0 to 65535"));
-  const auto web = server.StartClient({"web"});
-  ASSERT_TRUE(web->WaitForOut("\n"));
-  const std::string url = web->Output();
+  Process web(server.Command({"web"}));
+  ASSERT_TRUE(web.WaitForOut("\n"));
+  const std::string url = web.Output();
   const std::string port = url.substr(17, url.find("/#") - 17);  // after http://127.0.0.1:
   const ProcessResult taken = server.Client({"web", "--port", port});
   EXPECT_THAT(taken, ExitsWith(2));
   EXPECT_THAT(taken.err, HasSubstr(absl::StrCat("--port ", port, ": the port is in use")));
-  web->Signal(SIGINT);
-  EXPECT_THAT(web->Wait(), ExitsWith(130));
+  web.Signal(SIGINT);
+  EXPECT_THAT(web.Wait(), ExitsWith(130));
   fs::copy(ClientProgram(), server.folder().File("alone"));
   const ProcessResult alone = RunProgram({.command = {server.folder().File("alone"), "web"}});
   EXPECT_THAT(alone, ExitsWith(4));

@@ -93,25 +93,6 @@ void PreemptTasks(Sweep& sweep) {
   });
 }
 
-void AddPartitionLater(Sweep& sweep) {
-  sweep.Submit();
-  sweep.AwaitProblem("invalid partition specified: late");
-  sweep.cluster().Do("stop-controller");
-  WriteFile(sweep.cluster().conf(),
-            Contents(sweep.cluster().conf()) + "PartitionName=late Nodes=ALL MaxTime=60\n");
-  sweep.cluster().Do("start-controller");
-  sweep.AwaitRunningTasks();
-}
-
-void OpenFolderToOthers(Sweep& sweep) {
-  chmod(sweep.shared_folder().c_str(), 0777);
-  sweep.Submit();
-  sweep.AwaitProblem("can be written by other users");
-  EXPECT_TRUE(sweep.cluster().Queue().empty());
-  chmod(sweep.shared_folder().c_str(), 0700);
-  sweep.AwaitRunningTasks();
-}
-
 std::vector<Story> Stories() {
   return {{"TheServerIsKilled", {.workers = 2}, KillServerFourTimes},
           ControllerKilledAfter("TheControllerIsKilledAtOnce", 0),
@@ -135,11 +116,7 @@ std::vector<Story> Stories() {
           {"SlurmForgetsEndedJobs", {.cluster = {"MinJobAge=2"}}, &Sweep::SubmitAndAwaitTasks},
           {"TheClustersArraysAreSmall",
            {.cluster = {"MaxArraySize=3"}, .lease_seconds = 1},
-           &Sweep::SubmitAndAwaitTasks},
-          {"ThePartitionIsMadeLater",
-           {.flags = Split("--slurm-partition late"), .samples = 2'000'000},
-           AddPartitionLater},
-          {"TheFolderWasOpenToOthers", {}, OpenFolderToOthers}};
+           &Sweep::SubmitAndAwaitTasks}};
 }
 
 class SlurmFault : public testing::TestWithParam<Story> {};

@@ -7,7 +7,6 @@
 // one of them because they run in the background of a shell or under nohup.
 #pragma once
 
-#include <spawn.h>
 #include <sys/types.h>
 
 #include "tests/support/preamble.h"
@@ -32,7 +31,7 @@ MATCHER_P(ExitsWith, code, "") {
   return arg.exit_code == code;
 }
 
-// The destructor kills the program if it still runs.
+// One thread waits. The destructor kills the program if it still runs.
 class Process {
  public:
   explicit Process(const ProcessOptions& options);
@@ -40,7 +39,7 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  void Signal(int signal) const;  // no effect after Wait
+  void Signal(int signal) const;  // no effect after the program's end was noticed
   pid_t pid() const { return pid_; }
   std::string Output() const;  // standard output, then standard error, so far
 
@@ -57,31 +56,20 @@ class Process {
   // program ended without one.
   std::string WaitForErrLine(const std::function<bool(const std::string&)>& wanted);
   // Waits until the program ends, but no longer than this. False if it still runs.
-  bool EndsWithin(std::chrono::milliseconds time) const;
+  bool EndsWithin(std::chrono::milliseconds time);
   ProcessResult Wait();  // until the program ends; later calls return the same
 
  private:
-  struct Stream {
-    int descriptor = -1;
-    std::string text;
-    bool ended = false;
-    std::thread reader;
-  };
-  using Ends = std::vector<int>;  // the program's ends of pipes, or of the terminal
-  Ends OpenTerminal(posix_spawn_file_actions_t& actions);
-  Ends OpenPipes(posix_spawn_file_actions_t& actions);
-  void Start(const ProcessOptions& options, posix_spawn_file_actions_t& actions);
-  void Read(Stream& stream);
-  void Close(Stream& stream);
-  bool WaitFor(const Stream& stream, const std::string& text);
+  void Start(const std::vector<std::string>& command, const std::array<int, 3>& streams);
+  bool HasEnded();
+  bool WaitFor(int stream, const std::string& text);
 
   pid_t pid_ = 0;
-  int exit_code_ = -1;
-  bool waited_ = false;
-  mutable std::mutex mutex_;
-  std::condition_variable news_;
-  Stream out_, err_;  // a terminal has one
-  int closed_ = -1;   // an eventfd, which ends the reading of the terminal
+  std::optional<int> exit_code_;
+  // Files in memory: the program never waits for a reader. A terminal has one, and what the program
+  // writes is copied into it whenever the test looks.
+  int out_, err_;
+  int terminal_ = -1;
 };
 
 ProcessResult RunProgram(const ProcessOptions& options);

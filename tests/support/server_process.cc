@@ -50,7 +50,6 @@ bool ServerProcess::AwaitReady() {
       [](const std::string& text) { return text.find(kReady) != std::string::npos; });
   if (line.empty()) return false;
   if (!set_up_.listen.empty()) address_ = line.substr(line.rfind(' ') + 1);
-  OnReady();
   return true;
 }
 

@@ -29,7 +29,7 @@ struct ServerSetUp {
 class ServerProcess {
  public:
   explicit ServerProcess(ServerSetUp set_up = {});  // does not start the server
-  virtual ~ServerProcess() = default;               // kills the server
+  ~ServerProcess() = default;                       // kills the server
   ServerProcess(const ServerProcess&) = delete;
   ServerProcess& operator=(const ServerProcess&) = delete;
 
@@ -54,9 +54,6 @@ class ServerProcess {
   double ResidentMiB() const;
   double PeakMiB() const;
   double ProcessorSeconds() const;  // of the living threads
-
- protected:
-  virtual void OnReady() {}
 
  private:
   const ServerSetUp set_up_;

@@ -6,9 +6,7 @@
 namespace ballpiston {
 namespace {
 
-// Below $arrays is a folder for each array, NAME.NUMBER: the script, and for each task a file with
-// the number of its process and the time when the process began. The system gives the number of an
-// ended process to another one, perhaps to the server, which must not be killed.
+// A task has the name of its array in its environment. An ended process has no environment.
 constexpr char kOfAllPrograms[] = R"sh(
 for word; do
   case $word in
@@ -17,36 +15,26 @@ for word; do
     --wrap=*) script=${word#--wrap=} ;;
   esac
 done
-born() { cut -d' ' -f22 "/proc/$1/stat" 2>/dev/null; }
-# Whether the process of the task's file lives; a zombie has no program. Sets $process.
-lives() {
-  read -r process time <"$1" && [ -n "$time" ] && [ "$(born "$process")" = "$time" ] &&
-    readlink "/proc/$process/exe" >/dev/null
-}
+tasks() { grep -lszx "STAND_IN_ARRAY=$folder/$name" /proc/[0-9]*/environ; }
 )sh";
 
 constexpr char kSbatch[] = R"sh(
-array=$arrays/$name.$$
-mkdir "$array" && echo "$script" >"$array/script" || exit 1
-for task in $(seq 0 "$last"); do
-  echo "$name" >>"$arrays/../started"
-  SLURM_ARRAY_TASK_ID=$task setsid sh "$array/script" </dev/null >/dev/null 2>&1 &
-  echo "$! $(born $!)" >"$array/task.$task"
+# Starts itself again, so that tasks have the name from their first moment on.
+[ -n "$STAND_IN_ARRAY" ] || STAND_IN_ARRAY=$folder/$name exec "$0" "$@"
+for SLURM_ARRAY_TASK_ID in $(seq 0 "$last"); do
+  export SLURM_ARRAY_TASK_ID
+  echo "$name" >>"$folder/started"
+  setsid sh -c "$script" </dev/null >/dev/null 2>&1 &
 done
 echo $$
 )sh";
 
 constexpr char kSqueue[] = R"sh(
-for file in "$arrays/$name".*/task.*; do
-  if lives "$file"; then echo "RUNNING|None"; fi
-done 2>/dev/null
-exit 0
+tasks | sed 's/.*/RUNNING|None/'
 )sh";
 
 constexpr char kScancel[] = R"sh(
-for file in "$arrays"/$name.*/task.*; do
-  if lives "$file"; then kill -KILL "$process"; fi
-done 2>/dev/null
+for task in $(tasks); do kill -KILL "$(basename "${task%/environ}")"; done 2>/dev/null
 exit 0
 )sh";
 
@@ -54,11 +42,10 @@ exit 0
 
 StandInSlurm::StandInSlurm() {
   mkdir(shared_folder().c_str(), 0700);
-  mkdir(folder_.File("arrays").c_str(), 0700);
   mkdir(folder_.File("programs").c_str(), 0700);
   const auto write = [&](const std::string& name, const char* script) {
     const std::string path = folder_.File("programs/" + name);
-    WriteFile(path, "#!/bin/sh\narrays='" + folder_.File("arrays") + "'" + kOfAllPrograms + script);
+    WriteFile(path, "#!/bin/sh\nfolder='" + folder_.path() + "'" + kOfAllPrograms + script);
     chmod(path.c_str(), 0700);
   };
   write("sbatch", kSbatch);
@@ -67,7 +54,7 @@ StandInSlurm::StandInSlurm() {
 }
 
 StandInSlurm::~StandInSlurm() {
-  RunProgram({.command = {folder_.File("programs/scancel"), "--name=*"}});
+  RunProgram({.command = {folder_.File("programs/scancel"), "--name=.*"}});
 }
 
 std::vector<std::string> StandInSlurm::Launcher() const {
@@ -75,9 +62,7 @@ std::vector<std::string> StandInSlurm::Launcher() const {
 }
 
 int StandInSlurm::tasks() const {
-  const std::string path = folder_.File("started");
-  if (!std::filesystem::exists(path)) return 0;
-  const std::string lines = Contents(path);
+  const std::string lines = Contents(folder_.File("started"));
   return static_cast<int>(std::count(lines.begin(), lines.end(), '\n'));
 }
 

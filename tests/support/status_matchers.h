@@ -29,24 +29,15 @@ absl::Status StatusOf(const Result& result) {
   }
 }
 
-// For a failed assertion.
-inline std::string StatusText(const absl::Status& status) {
-  const bool is_late = status.code() == absl::StatusCode::kDeadlineExceeded;
-  return "whose status is " + status.ToString() +
-         (is_late
-              ? "\n(a call without a deadline of its own gets 15 minutes in tests: support/await.h)"
-              : "");
-}
-
 MATCHER(IsOk, "") {
   const absl::Status status = StatusOf(arg);
-  *result_listener << StatusText(status);
+  *result_listener << "whose status is " << status;
   return status.ok();
 }
 
 MATCHER_P2(StatusIs, code, message, "") {
   const absl::Status status = StatusOf(arg);
-  *result_listener << StatusText(status);
+  *result_listener << "whose status is " << status;
   return static_cast<int>(status.code()) == static_cast<int>(code) &&
          testing::ExplainMatchResult(message, std::string(status.message()), result_listener);
 }
@@ -58,7 +49,7 @@ auto StatusIs(Code code) {
 
 MATCHER_P(IsOkAndHolds, value, "") {
   if (!arg.ok()) {
-    *result_listener << StatusText(StatusOf(arg));
+    *result_listener << "whose status is " << arg.status();
     return false;
   }
   return testing::ExplainMatchResult(value, *arg, result_listener);

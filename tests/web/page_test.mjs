@@ -19,6 +19,7 @@ const PAIR = '--rho 0.5296 --delta 0.1';
 
 let programs, web, browser, context, page, mistakes;
 let firstHit, gas; // names of finished jobs
+let endless = []; // names of jobs that the test has submitted
 
 before(async () => {
   programs = new Programs();
@@ -42,6 +43,7 @@ after(async () => {
 
 beforeEach(() => newPage());
 afterEach(async () => {
+  for (const job of endless.splice(0)) cancel(job);
   await context.close();
   assert.deepEqual(mistakes, []);
 });
@@ -66,10 +68,7 @@ async function newPage(options = {}) {
 async function open(view = 'jobs', address = web.address) {
   await page.goto(address);
   await page.waitForURL((url) => !url.hash.includes('token'));
-  if (view !== 'jobs')
-    await page.evaluate((hash) => {
-      location.hash = hash;
-    }, view);
+  if (view !== 'jobs') await page.evaluate(`location.hash = '${view}'`);
   await page.getByRole('heading', {level: 1}).waitFor();
 }
 
@@ -77,11 +76,31 @@ const banner = () => page.locator('#connection');
 const jobLink = (job) => page.locator(`a[href="#${job}"]`);
 const charts = () => page.locator('.chart canvas:not(.key)');
 const pixelsOf = (locator) => locator.evaluate((canvas) => canvas.toDataURL());
-const submitEndless = () =>
-  programs.run(
-    `submit conditional-mean-free-time ${PAIR} --epsilon 0.1,0.2 --model billiard --tolerance 2e-6`,
+const shown = (text) => page.getByText(text).first().waitFor();
+const told = (text) => banner().filter({hasText: text}).waitFor();
+const click = (button) => page.getByRole('button', {name: button}).click();
+const refuseCreations = (answer) =>
+  page.route('**/ballpiston.v1.EnsembleService/CreateEnsembleJob', (route) =>
+    route.fulfill(answer),
   );
-const cancel = (job) => programs.run(`cancel ${job}`);
+
+// A job that ends with the test.
+function submitEndless(
+  question = 'conditional-mean-free-time --epsilon 0.1,0.2 --tolerance 2e-6',
+) {
+  const job = programs.run(`submit ${question} ${PAIR} --model billiard`);
+  endless.push(job);
+  return job;
+}
+
+// Also a job that has ended.
+function cancel(job) {
+  try {
+    programs.run(`cancel ${job}`);
+  } catch (error) {
+    assert.match(error.stderr, /JOB_ALREADY_ENDED/);
+  }
+}
 
 async function waitUntilChanged(read, before) {
   await assertSoon(async () => assert.notEqual(await read(), before));
@@ -110,11 +129,8 @@ async function assertNoViolations(where) {
 }
 
 async function assertFitsTheWidth(where) {
-  const {width, room} = await page.evaluate(() => ({
-    width: document.documentElement.scrollWidth,
-    room: innerWidth,
-  }));
-  assert.ok(width <= room, `${where}: ${width} pixels wide, room for ${room}`);
+  const excess = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  assert.ok(excess <= 0, `${where}: ${excess} pixels too wide`);
 }
 
 async function focusedText() {
@@ -142,19 +158,10 @@ describe('The page', () => {
     await jobLink(firstHit).waitFor();
   });
 
-  it('says that the address with the token is needed', async () => {
-    await page.goto(web.address.split('#')[0]);
-    await banner().filter({hasText: 'Open the whole address'}).waitFor();
-    await page.goto(web.address.replace(/token=.*/, 'token=0123'));
-    await banner().filter({hasText: 'wrong token'}).waitFor();
-    await open();
-    await jobLink(firstHit).waitFor();
-    await banner().waitFor({state: 'hidden'});
-  });
-
-  it('returns to the requested view after the token is given', async () => {
+  it('says that the address with the token is needed, and then shows the requested view', async () => {
     await page.goto(web.address.replace(/#.*/, `#${firstHit}/results/2`));
-    await banner().filter({hasText: 'Authorization: Bearer TOKEN is missing'}).waitFor();
+    await told('Authorization: Bearer TOKEN is missing');
+    await told('Open the whole address');
     await page.goto(web.address);
     await page.getByRole('heading', {name: 'Point 2'}).waitFor();
     await banner().waitFor({state: 'hidden'});
@@ -203,36 +210,31 @@ describe('Jobs', () => {
       window.isTheSame = true;
     });
     const job = submitEndless();
-    try {
-      await jobLink(job).click();
-      await page.getByText('Convergence of mean free time conditional').waitFor();
-      const chart = charts().first();
-      await chart.waitFor();
-      await waitUntilChanged(() => pixelsOf(chart), await pixelsOf(chart));
-      await page.getByText('Numbers').first().click();
-      const rows = page.locator('.chart').first().locator('tbody tr');
-      const count = await rows.count();
-      await assertSoon(async () => assert.ok((await rows.count()) > count + 2));
-      assert.equal(await page.evaluate(() => window.isTheSame), true);
-    } finally {
-      cancel(job);
-    }
-    await page.getByText('The job was cancelled').waitFor();
+    await jobLink(job).click();
+    await shown('Convergence of mean free time conditional');
+    const chart = charts().first();
+    await chart.waitFor();
+    await waitUntilChanged(() => pixelsOf(chart), await pixelsOf(chart));
+    await page.getByText('Numbers').first().click();
+    const rows = page.locator('.chart').first().locator('tbody tr');
+    const count = await rows.count();
+    await assertSoon(async () => assert.ok((await rows.count()) > count + 2));
+    assert.equal(await page.evaluate(() => window.isTheSame), true);
+    cancel(job);
+    await shown('The job was cancelled');
     await page.getByRole('heading', {name: /^Point \d, unfinished: not kept$/}).waitFor();
   });
 
   it('show histograms with the exact law', async () => {
     await open(firstHit);
-    await page.getByText('Ingoing angle α, σ = −1').waitFor();
-    await page.getByText('equilibrium law h⁽¹⁾, exact').first().waitFor();
+    await shown('Ingoing angle α, σ = −1');
+    await shown('equilibrium law h⁽¹⁾, exact');
     await page.getByText('Numbers').first().click();
     const rows = await page.locator('.chart').first().locator('tbody tr').allInnerTexts();
     assert.equal(rows.length, 51); // 1000 bins in groups of 20, and the upper edge
-    const {width} = await page.locator('.u-over').first().boundingBox();
-    await page
-      .locator('.u-over')
-      .first()
-      .hover({position: {x: (20.8 / 50) * width, y: 9}});
+    const area = page.locator('.u-over').first();
+    const {width} = await area.boundingBox();
+    await area.hover({position: {x: (20.8 / 50) * width, y: 9}});
     const read = await page.locator('.readout').first().innerText();
     assert.equal(read.split(' · ')[0], `α = ${rows[20].split('\t')[0]}`);
   });
@@ -248,12 +250,10 @@ describe('Jobs', () => {
     const finished = [point(0, 0.1, 0.5), point(1, 0.2, 0.5)];
     const near = [point(2, 0.1, 0.499999999999), point(3, 0.2, 0.499999999999)];
     await answerInstead(page, 'EnsembleService/GetEnsembleJob', job);
+    const withExact = (label) => [label, `${label}, exact`];
     for (const [points, labels] of [
       [finished, ['closed form', 'exact']],
-      [
-        [...finished, ...near],
-        ['ε = 0.5', 'ε = 0.5, exact', 'ε = 0.499999999999', 'ε = 0.499999999999, exact'],
-      ],
+      [[...finished, ...near], ['ε = 0.5', 'ε = 0.499999999999'].flatMap(withExact)],
     ]) {
       await streamInstead(page, 'EnsembleService/WatchEnsembleJob', [
         {resume_token: '1', snapshot: {finished_points: points}},
@@ -262,52 +262,41 @@ describe('Jobs', () => {
       await open('jobs');
       await open(`${job.name}/results/4`);
       await page.getByRole('heading', {name: 'There is no point 4: the last one'}).waitFor();
-      const shown = page.locator('.legend li');
-      await assertSoon(async () => assert.deepEqual(await shown.allInnerTexts(), labels));
+      const legend = page.locator('.legend li');
+      await assertSoon(async () => assert.deepEqual(await legend.allInnerTexts(), labels));
     }
   });
 
   it('show growing histograms while they run', async () => {
-    const job = programs.run(
-      `submit energy-relaxation ${PAIR} --epsilon 0.3 --model billiard --samples 1e12`,
-    );
-    try {
-      await open(job);
-      const chart = page.locator('.chart', {hasText: 'Energy of the piston'}).last();
-      await chart.waitFor();
-      const canvas = chart.locator('canvas:not(.key)');
-      await waitUntilChanged(() => pixelsOf(canvas), await pixelsOf(canvas));
-      const histogram = page.locator('.chart', {hasText: /Energy of the piston, time/}).first();
-      const area = histogram.locator('.u-over');
-      const {width} = await area.boundingBox();
-      const shownAt = async (share) => {
-        await area.hover({position: {x: share * width, y: 30}});
-        return (await histogram.locator('.readout').innerText()).split(' · ')[0];
-      };
-      const middle = await shownAt(0.5);
-      await page.mouse.down();
-      await shownAt(0.9);
-      await page.mouse.up();
-      assert.equal(await shownAt(0.001), middle);
-      const zoomed = histogram.locator('canvas:not(.key)');
-      await waitUntilChanged(() => pixelsOf(zoomed), await pixelsOf(zoomed));
-      await shownAt(0.2);
-      assert.equal(await shownAt(0.001), middle);
-    } finally {
-      cancel(job);
-    }
+    await open(submitEndless('energy-relaxation --epsilon 0.3 --samples 1e12'));
+    const chart = page.locator('.chart', {hasText: 'Energy of the piston'}).last();
+    await chart.waitFor();
+    const canvas = chart.locator('canvas:not(.key)');
+    await waitUntilChanged(() => pixelsOf(canvas), await pixelsOf(canvas));
+    const histogram = page.locator('.chart', {hasText: /Energy of the piston, time/}).first();
+    const area = histogram.locator('.u-over');
+    const {width} = await area.boundingBox();
+    const shownAt = async (share) => {
+      await area.hover({position: {x: share * width, y: 30}});
+      return (await histogram.locator('.readout').innerText()).split(' · ')[0];
+    };
+    const middle = await shownAt(0.5);
+    await page.mouse.down();
+    await shownAt(0.9);
+    await page.mouse.up();
+    assert.equal(await shownAt(0.001), middle);
+    const zoomed = histogram.locator('canvas:not(.key)');
+    await waitUntilChanged(() => pixelsOf(zoomed), await pixelsOf(zoomed));
+    await shownAt(0.2);
+    assert.equal(await shownAt(0.001), middle);
   });
 
   it('show the reason of a wait', async () => {
-    const first = submitEndless();
+    submitEndless();
     await answerInstead(page, 'EnsembleService/GetEnsembleJob', fakeJob(1, {state: 'QUEUED'}));
     await page.route(/WatchEnsembleJob/, () => {});
-    try {
-      await open('ensembleJobs/0000000000000001');
-      await page.getByText(/waits until a worker is free.*1 of 1 workers are busy/).waitFor();
-    } finally {
-      cancel(first);
-    }
+    await open('ensembleJobs/0000000000000001');
+    await shown(/waits until a worker is free.*1 of 1 workers are busy/);
   });
 
   it('are listed by their state', async () => {
@@ -352,43 +341,32 @@ describe('Jobs', () => {
 
   it('that do not exist are reported', async () => {
     await open('ensembleJobs/nothing');
-    await banner().filter({hasText: 'no such job'}).waitFor();
+    await told('no such job');
   });
 
   it('can be submitted again if they were cancelled', async () => {
     const job = submitEndless();
     cancel(job);
     await open(job);
-    await page.getByRole('button', {name: 'Submit again'}).click();
+    await click('Submit again');
     await page.waitForURL((url) => !url.href.includes(job));
-    await page.getByText('running').first().waitFor();
+    await shown('running');
     cancel(new URL(page.url()).hash.slice(1));
-    await page.getByText('The job was cancelled').waitFor();
+    await shown('The job was cancelled');
   });
 
+  const details = [{debug: {reason: 'TOO_MANY_POINTS'}}];
+  const refusal = {code: 'resource_exhausted', message: 'at most 10 points', details};
   for (const [what, answer, text] of [
     ['the gateway', {status: 413}, 'HTTP status 413'],
-    [
-      'the server',
-      {
-        status: 429,
-        json: {
-          code: 'resource_exhausted',
-          message: 'at most 10 points',
-          details: [{debug: {reason: 'TOO_MANY_POINTS'}}],
-        },
-      },
-      'at most 10 points',
-    ],
+    ['the server', {status: 429, json: refusal}, 'at most 10 points'],
   ]) {
     it(`that are too large for ${what} are submitted once`, async () => {
       const watch = new Promise((begun) => page.route(/WatchEnsembleJob/, begun));
       await open(firstHit);
-      await page.route('**/ballpiston.v1.EnsembleService/CreateEnsembleJob', (route) =>
-        route.fulfill(answer),
-      );
-      await page.getByRole('button', {name: 'Submit again'}).click();
-      await banner().filter({hasText: `The server says: ${text}`}).waitFor();
+      await refuseCreations(answer);
+      await click('Submit again');
+      await told(`The server says: ${text}`);
       assert.ok(await page.getByRole('button', {name: 'Submit again'}).isEnabled());
       await (await watch).continue(); // the answer to another request leaves the reason on the page
       await page.getByRole('button', {name: 'Point 3'}).waitFor();
@@ -398,13 +376,12 @@ describe('Jobs', () => {
 
   it('that the server refuses for now are submitted again, and answered from the store', async () => {
     await open(firstHit);
-    await page.route('**/ballpiston.v1.EnsembleService/CreateEnsembleJob', (route) =>
-      route.fulfill({status: 429, json: {code: 'resource_exhausted', message: 'too many jobs'}}),
-    );
-    await page.getByRole('button', {name: 'Submit again'}).click();
-    await banner().filter({hasText: 'Retrying. The server says: too many jobs'}).waitFor();
-    await page.unroute('**/ballpiston.v1.EnsembleService/CreateEnsembleJob');
-    await page.getByText('Answered from the store').waitFor();
+    const json = {code: 'resource_exhausted', message: 'too many jobs'};
+    await refuseCreations({status: 429, json});
+    await click('Submit again');
+    await told('Retrying. The server says: too many jobs');
+    await page.unrouteAll();
+    await shown('Answered from the store');
     assert.ok(page.url().includes(firstHit));
   });
 
@@ -420,13 +397,10 @@ describe('Jobs', () => {
   });
 
   it('with expired results show the command that computes them again', async () => {
-    await answerInstead(
-      page,
-      'EnsembleService/GetEnsembleJob',
-      fakeJob(1, {results_expired: true}),
-    );
-    await open('ensembleJobs/0000000000000001');
-    await page.getByText('ballpiston run --again ensembleJobs/0000000000000001').waitFor();
+    const job = fakeJob(1, {results_expired: true});
+    await answerInstead(page, 'EnsembleService/GetEnsembleJob', job);
+    await open(job.name);
+    await shown(`ballpiston run --again ${job.name}`);
   });
 });
 
@@ -434,9 +408,9 @@ describe('When the server stops', () => {
   it('the data stay on the page, and the watch resumes after a restart', async () => {
     const job = submitEndless();
     await open(job);
-    await page.getByText('Convergence of').waitFor();
+    await shown('Convergence of');
     programs.stopServer();
-    await banner().filter({hasText: 'No answer; retrying'}).waitFor();
+    await told('No answer; retrying');
     const value = page.locator('.estimates td').nth(1);
     assert.notEqual(await value.innerText(), '');
     await page.getByText('Numbers').first().click();
@@ -445,8 +419,6 @@ describe('When the server stops', () => {
     programs.startServer();
     await banner().waitFor({state: 'hidden'});
     await assertSoon(async () => assert.ok((await rows.count()) > known));
-    cancel(job);
-    await page.getByText('The job was cancelled').waitFor();
   });
 
   it('and ballpiston web restarts with another token, the page says so', async () => {
@@ -454,9 +426,9 @@ describe('When the server stops', () => {
     await open('jobs', own.address);
     await jobLink(firstHit).waitFor();
     await own.stop();
-    await banner().filter({hasText: 'ballpiston web no longer runs'}).waitFor();
+    await told('ballpiston web no longer runs');
     const next = await programs.web(new URL(own.address).port);
-    await banner().filter({hasText: 'Open the whole address'}).waitFor();
+    await told('Open the whole address');
     assert.ok(await jobLink(firstHit).isVisible());
     await page.goto(next.address);
     await banner().waitFor({state: 'hidden'});
@@ -499,9 +471,9 @@ describe('Keyboard, colours and width', () => {
     await page.locator('.events li').first().filter({hasText: 'ball piston'}).waitFor();
     await page.getByLabel('δ').fill('0.01'); // the first exchange is event 19,098
     await page.getByRole('textbox', {name: 'Events'}).fill('1e5');
-    await page.getByRole('button', {name: 'Trace'}).click();
+    await click('Trace');
     await clock.filter({hasText: 't = 0.00'}).waitFor();
-    await page.getByRole('button', {name: 'Next exchange'}).click();
+    await click('Next exchange');
     await page.locator('.events li').first().filter({hasText: 'ball piston'}).waitFor();
   });
 
@@ -516,11 +488,11 @@ describe('Keyboard, colours and width', () => {
     await open('orbit');
     await page.getByLabel('Cells').fill('3x2');
     await page.getByLabel('δ').fill('0.15');
-    await page.getByRole('button', {name: 'Trace'}).click();
+    await click('Trace');
     await page.getByRole('img', {name: 'Gas of 6 balls and 12 pistons'}).waitFor();
     await page.getByRole('textbox', {name: 'Events'}).fill('1e3');
     const request = page.waitForRequest(/TraceOrbit/);
-    await page.getByRole('button', {name: 'Trace'}).click();
+    await click('Trace');
     assert.match((await request).postData(), /"events":1000\b/);
     for (const [field, wrong, right] of [
       ['Seed', '1e3', '7'],
@@ -531,8 +503,8 @@ describe('Keyboard, colours and width', () => {
       assert.equal(await form.evaluate((fields) => fields.checkValidity()), false);
       await page.getByLabel(field).fill(right);
     }
-    await page.getByRole('button', {name: 'Trace'}).click();
-    await banner().filter({hasText: 'delta is 0.9'}).waitFor();
+    await click('Trace');
+    await told('delta is 0.9');
   });
 
   it('the dark theme follows the system or the reader’s choice', async () => {
@@ -543,7 +515,7 @@ describe('Keyboard, colours and width', () => {
       });
     await newPage({colorScheme: 'dark'});
     await open(firstHit);
-    await page.getByText('Ingoing angle α, σ = −1').waitFor();
+    await shown('Ingoing angle α, σ = −1');
     assert.ok(await isDark());
     const inDark = await pixelsOf(charts().first());
     await page.getByLabel('Theme').selectOption('light');
@@ -577,28 +549,29 @@ describe('Accessibility rules', () => {
   })) {
     it(`have no violations, ${name}; all views fit a phone`, async () => {
       const fits = options.viewport ? assertFitsTheWidth : () => {};
+      const check = async (view) => {
+        await fits(view);
+        await assertNoViolations(view);
+      };
       await newPage(options);
       await open();
       await jobLink(firstHit).waitFor();
-      await fits('jobs');
-      await assertNoViolations('jobs');
+      await check('jobs');
       await open(firstHit);
-      await page.getByText('Ingoing angle α, σ = −1').waitFor();
+      await shown('Ingoing angle α, σ = −1');
       await fits('first hit');
       await page.getByText('Specification, times and work').click();
       await page.getByText('As JSON').click();
       await page.getByText('Numbers').first().click();
       await assertNoViolations('first hit');
       await open(gas);
-      await page.getByText('Speed of the balls').waitFor();
-      await fits('gas');
-      await assertNoViolations('gas');
+      await shown('Speed of the balls');
+      await check('gas');
       await open('orbit');
       await page.getByRole('img', {name: 'Cell with one ball'}).waitFor();
-      await fits('orbit');
-      await assertNoViolations('orbit');
+      await check('orbit');
       await page.goto(web.address.replace(/token=.*/, 'token=0123'));
-      await banner().filter({hasText: 'wrong token'}).waitFor();
+      await told('wrong token');
       await assertNoViolations('an error');
     });
   }
@@ -616,8 +589,8 @@ describe('A report', () => {
     await page.goto(`file://${file}`);
     await page.getByRole('heading', {name: 'first hit'}).waitFor();
     await page.getByRole('heading', {name: 'gas equilibrium'}).waitFor();
-    await page.getByText('Ingoing angle α, σ = −1').first().waitFor();
-    await page.getByText('Speed of the balls').waitFor();
+    await shown('Ingoing angle α, σ = −1');
+    await shown('Speed of the balls');
     await charts().first().waitFor();
     assert.deepEqual(
       asked.filter((url) => !url.startsWith('data:')),

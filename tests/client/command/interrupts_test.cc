@@ -5,7 +5,6 @@
 
 #include "client/output/output_file.h"
 #include "tests/client/preamble.h"
-#include "tests/support/death_test_folder.h"
 
 namespace ballpiston::client {
 namespace {

@@ -419,7 +419,7 @@ def test_help_lists_the_variables_of_a_figure(capsys: pytest.CaptureFixture[str]
     assert "--samples VALUE" in text and "by default 200000" in text
 
 
-def test_a_folder_that_is_missing_or_cannot_be_made_is_an_error(
+def test_a_folder_or_picture_that_cannot_be_made_is_an_error(
     home: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert command.main(["cell"]) == 2
@@ -428,6 +428,9 @@ def test_a_folder_that_is_missing_or_cannot_be_made_is_an_error(
     file.touch()
     assert command.main(["cell", "--out", str(file)]) == 2
     assert f"--out: cannot write {file}: File exists" in capsys.readouterr().err
+    (tmp_path / "cell.png").mkdir()
+    assert command.main(["cell", "--out", str(tmp_path)]) == 2
+    assert "cell.png" in capsys.readouterr().err
 
 
 def test_a_program_that_is_missing_or_fails_is_an_error(

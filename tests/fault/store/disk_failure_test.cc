@@ -71,11 +71,11 @@ TEST_F(DiskFailure, AServerStartsOnADiskThatItsReserveFills) {
 
 TEST_F(DiskFailure, ABackupThatASignalEndsLeavesNoFile) {
   Open();  // makes the store
-  const TemporaryFolder folder;
+  const DeathTestFolder folder;
   disk_.SetBeforeOperation([&] {
     if (!NamesIn(folder.path()).empty()) raise(SIGTERM);
   });
-  EXPECT_EXIT(BackupStore(kStorePath, folder.File("copy")).IgnoreError(),
+  EXPECT_EXIT(BackupStore(kStorePath, folder.path() + "/copy").IgnoreError(),
               testing::ExitedWithCode(128 + SIGTERM), "");
   EXPECT_THAT(NamesIn(folder.path()), testing::IsEmpty());
 }

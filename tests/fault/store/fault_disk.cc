@@ -185,34 +185,31 @@ FaultDisk::FaultDisk(DiskFiles files) : name_(UniqueName()), initial_(std::move(
 
 FaultDisk::~FaultDisk() { sqlite3_vfs_unregister(registered_.get()); }
 
-bool FaultDisk::Refuses(const DiskOperation& operation) const {
+int FaultDisk::ErrorOf(const DiskOperation& operation) const {
   const bool is_write = operation.kind == DiskOperation::Kind::kWrite;
-  if (is_write && OutgrowsCapacity(operation)) return true;
-  if (!refusal_) return false;
-  const bool meant =
-      *refusal_ == Refusal::kSyncError ? operation.kind == DiskOperation::Kind::kSync : is_write;
-  return meant && operations_.size() < end_of_refusal_;
+  if (is_write && OutgrowsCapacity(operation)) return SQLITE_FULL;
+  if (!refusal_ || operations_.size() >= end_of_refusal_) return SQLITE_OK;
+  if (is_write && *refusal_ == Refusal::kFull) return SQLITE_FULL;
+  if (is_write && *refusal_ == Refusal::kWriteError) return SQLITE_IOERR_WRITE;
+  const bool is_sync = operation.kind == DiskOperation::Kind::kSync;
+  return is_sync && *refusal_ == Refusal::kSyncError ? SQLITE_IOERR_FSYNC : SQLITE_OK;
 }
 
 bool FaultDisk::OutgrowsCapacity(const DiskOperation& operation) const {
   if (capacity_ == std::numeric_limits<int64_t>::max()) return false;
   const auto end = operation.offset + static_cast<int64_t>(operation.data.size());
   const int64_t size = BytesOf(operation.path);
-  return end > size && BytesUsed() + end - size > capacity_;
-}
-
-int FaultDisk::CodeOf(const DiskOperation& operation) const {
-  if (operation.kind == DiskOperation::Kind::kSync) return SQLITE_IOERR_FSYNC;
-  return refusal_ == Refusal::kWriteError ? SQLITE_IOERR_WRITE : SQLITE_FULL;
+  return end > size && bytes_used() + end - size > capacity_;
 }
 
 int FaultDisk::Perform(DiskOperation operation, absl::FunctionRef<int()> perform) {
   std::lock_guard lock(mutex_);
-  operation.refused = Refuses(operation);
-  operations_.push_back(operation);
-  if (!operation.refused) return perform();
+  const int error = ErrorOf(operation);
+  operation.refused = error != SQLITE_OK;
+  operations_.push_back(std::move(operation));
+  if (error == SQLITE_OK) return perform();
   ++refusals_;
-  return CodeOf(operation);
+  return error;
 }
 
 void FaultDisk::Refuse(Refusal refusal, size_t count) {
@@ -232,11 +229,6 @@ void FaultDisk::StopRefusing() {
   capacity_ = std::numeric_limits<int64_t>::max();
 }
 
-int64_t FaultDisk::refusals() const {
-  std::lock_guard lock(mutex_);
-  return refusals_;
-}
-
 std::vector<DiskOperation> FaultDisk::operations() const {
   std::lock_guard lock(mutex_);
   return operations_;
@@ -248,15 +240,11 @@ int64_t FaultDisk::BytesOf(const std::string& path) const {
   return none ? 0 : static_cast<int64_t>(bytes);
 }
 
-int64_t FaultDisk::BytesUsed() const {
+int64_t FaultDisk::bytes_used() const {
+  std::lock_guard lock(mutex_);
   int64_t bytes = 0;
   for (const auto& [path, number] : numbers_) bytes += BytesOf(path);
   return bytes;
-}
-
-int64_t FaultDisk::bytes_used() const {
-  std::lock_guard lock(mutex_);
-  return BytesUsed();
 }
 
 }  // namespace ballpiston::server

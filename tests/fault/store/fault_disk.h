@@ -53,7 +53,7 @@ class FaultDisk {
   void SetCapacity(int64_t bytes);
   void StopRefusing();
 
-  int64_t refusals() const;  // so far
+  int64_t refusals() const { return refusals_; }  // so far
   std::vector<DiskOperation> operations() const;
   int64_t bytes_used() const;
   DiskFiles initial() const { return initial_; }
@@ -68,11 +68,9 @@ class FaultDisk {
   int Perform(DiskOperation operation, absl::FunctionRef<int()> perform);
 
   // The lock is held by the callers of these.
-  bool Refuses(const DiskOperation& operation) const;
-  int CodeOf(const DiskOperation& operation) const;
+  int ErrorOf(const DiskOperation& operation) const;  // a code of SQLite
   bool OutgrowsCapacity(const DiskOperation& operation) const;
   int64_t BytesOf(const std::string& path) const;
-  int64_t BytesUsed() const;
 
   const TemporaryFolder folder_;
   const std::string name_;  // of the file system
@@ -87,7 +85,7 @@ class FaultDisk {
   std::optional<Refusal> refusal_;
   size_t end_of_refusal_ = 0;  // operations from this number on are not refused
   int64_t capacity_ = std::numeric_limits<int64_t>::max();
-  int64_t refusals_ = 0;
+  std::atomic<int64_t> refusals_ = 0;
 };
 
 }  // namespace ballpiston::server

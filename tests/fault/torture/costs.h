@@ -2,13 +2,10 @@
 // affects both, so their ratio does not depend on it if they are measured in turn.
 #pragma once
 
-#include "client/library/client.h"
 #include "core/ensemble/point_fold.h"
 #include "server/convert/spec.h"
 #include "server/processor_time.h"
 #include "tests/fault/torture/questions.h"
-#include "tests/support/preamble.h"
-#include "tests/support/server_process.h"
 
 namespace ballpiston::torture {
 

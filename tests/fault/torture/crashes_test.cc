@@ -1,7 +1,7 @@
 // The engine kills the server again and again, always for one job: the job fails, others do not.
 #include "server/convert/errors.h"
 #include "server/status/failpoint.h"
-#include "tests/fault/torture/preamble.h"
+#include "tests/fault/torture/questions.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -11,45 +11,30 @@ constexpr int kDeaths = 3;
 constexpr uint64_t kSeedOfTheCrash = 13;
 constexpr int kDiedOfAFault = 128 + SIGSEGV;
 
-std::string Armed() {
-  return absl::StrCat(std::string(server::kCrashForSeed), ":", kSeedOfTheCrash);
-}
-
-std::vector<v1::EnsembleSpec> InnocentQuestions() {
-  std::vector<v1::EnsembleSpec> questions;
-  for (int i = 0; i < kJobs; ++i) questions.push_back(ManyPoints(2, 20'000 + 1'000 * i));
-  return questions;
-}
-
-// Clients that submit all jobs before one of them is computed: the server is killed at once.
-std::vector<std::string> SubmitAll(ConnectedServer& server,
-                                   const std::vector<v1::EnsembleSpec>& questions) {
-  server.Start();
-  std::vector<std::string> names;
-  const client::Client client = server.NewClient();
-  for (const v1::EnsembleSpec& question : questions) {
-    names.push_back(OrThrow(client.Create(question)).name());
-  }
-  server.KillHard();
-  return names;
-}
-
 TEST(Crashes, OneJobFailsAndTheOthersHaveTheirBytes) {
   Findings findings("crashes");
-  std::vector<v1::EnsembleSpec> questions = InnocentQuestions();
+  const std::string failpoint =
+      absl::StrCat(std::string(server::kCrashForSeed), ":", kSeedOfTheCrash);
+  std::vector<v1::EnsembleSpec> questions;
+  for (int i = 0; i < kJobs; ++i) questions.push_back(ManyPoints(2, 20'000 + 1'000 * i));
   const std::vector<Answer> answers = UndisturbedAnswers(questions);
   v1::EnsembleSpec crash = Endless();
   crash.set_seed(kSeedOfTheCrash);
   questions.push_back(crash);
   ConnectedServer server;
-  const std::vector<std::string> names = SubmitAll(server, questions);
+  server.Start();
+  const client::Client client = server.NewClient();
+  std::vector<std::string> names;
+  for (const v1::EnsembleSpec& question : questions) {
+    names.push_back(OrThrow(client.Create(question)).name());
+  }
+  server.KillHard();  // before one of the jobs is computed
   for (int life = 0; life < kDeaths; ++life) {
-    server.Spawn(Armed());
+    server.Spawn(failpoint);
     EXPECT_EQ(server.AwaitEnd(), kDiedOfAFault) << server.log();
   }
-  server.Spawn(Armed());
+  server.Spawn(failpoint);
   ASSERT_TRUE(server.AwaitReady()) << server.log();
-  const client::Client client = server.NewClient();
   const v1::EnsembleJob crashed = AwaitEnd(client, names.back());
   EXPECT_EQ(crashed.state(), v1::EnsembleJob::FAILED) << crashed.ShortDebugString();
   EXPECT_EQ(server::ReasonOf(crashed.error()), "ENGINE_CRASHED");

@@ -2,7 +2,7 @@
 #include <list>
 
 #include "client/library/job_watch.h"
-#include "tests/fault/torture/preamble.h"
+#include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/stalled_watches.h"
 #include "tests/server/call_by_name.h"
 
@@ -62,36 +62,25 @@ double HealthP99(const std::shared_ptr<grpc::Channel>& channel, int checks) {
 
 // Creates jobs until the server rejects one; returns how many it accepted.
 int FillQueue(const client::Client& client) {
-  std::atomic<int> asked = 0, taken = 0;
-  std::vector<std::thread> threads;
-  for (int i = 0; i < 16; ++i) {
-    threads.emplace_back([&] {
-      while (true) {
-        v1::EnsembleSpec spec = Endless();
-        spec.set_seed(static_cast<uint64_t>(1'000 + asked++));
-        const auto job = client.Create(spec);
-        if (!job.ok()) {
-          EXPECT_THAT(job, StatusIs(absl::StatusCode::kResourceExhausted));
-          return;
-        }
-        ++taken;
-      }
-    });
+  v1::EnsembleSpec spec = Endless();
+  for (int taken = 0;; ++taken) {
+    spec.set_seed(static_cast<uint64_t>(1'000 + taken));
+    const auto job = client.Create(spec);
+    if (job.ok()) continue;
+    EXPECT_THAT(job, StatusIs(absl::StatusCode::kResourceExhausted));
+    return taken;
   }
-  for (std::thread& thread : threads) thread.join();
-  return taken;
 }
 
 class LiveWatchers : public testing::Test {
  protected:
-  explicit LiveWatchers(double drain_seconds = kDrainSeconds)
-      : queue_(Size(100, 1000)),
-        server_({.workers = 2,
-                 .flags = {absl::StrFormat("--max-active-jobs-per-principal=%d", queue_),
-                           absl::StrFormat("--drain-seconds=%g", drain_seconds)}}) {
-    server_.Start();
+  void Start(double drain_seconds) {
+    server_.emplace(
+        ServerSetUp{.flags = {absl::StrFormat("--max-active-jobs-per-principal=%d", queue_),
+                              absl::StrFormat("--drain-seconds=%g", drain_seconds)}});
+    server_->Start();
     for (size_t i = 0; i < kConnectionsOfWatchers; ++i) {
-      stubs_.push_back(v1::EnsembleService::NewStub(server_.Connect()));
+      stubs_.push_back(v1::EnsembleService::NewStub(server_->Connect()));
     }
   }
 
@@ -120,36 +109,32 @@ class LiveWatchers : public testing::Test {
   // From SIGTERM to the process's end.
   double SecondsToStop(const std::string& clients) {
     const auto start = Clock::now();
-    EXPECT_EQ(server_.Stop(), 0);
+    EXPECT_EQ(server_->Stop(), 0);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     findings_.Note("seconds to stop, " + clients, absl::StrFormat("%.2f", seconds));
     return seconds;
   }
 
   double Health(const std::string& when) {
-    const double p99 = HealthP99(server_.Connect(), Size(10, 2000));
+    const double p99 = HealthP99(server_->Connect(), Size(10, 2000));
     findings_.Note("health p99, ms, " + when, absl::StrFormat("%.1f", 1e3 * p99));
     return p99;
   }
 
-  const int queue_;  // its length
+  const int queue_ = Size(100, 1000);  // its length
   Findings findings_{"live watchers"};
-  ConnectedServer server_;
+  std::optional<ConnectedServer> server_;
   std::vector<std::unique_ptr<v1::EnsembleService::Stub>> stubs_;
   std::list<LiveWatcher> watchers_;
 };
 
 TEST_F(LiveWatchers, AllGetTheEndAndHealthAnswersWithAFullQueue) {
-  const client::Client client = server_.NewClient();
-  Health("a quiet server");
+  Start(kDrainSeconds);
+  const client::Client client = server_->NewClient();
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(Endless()));
-  Health("one job");
-  const double mib_without = server_.ResidentMiB();
   Attach(Size(100, 1000), job.name());
   AwaitHeard(3);
   findings_.Count("watchers at once", static_cast<int64_t>(watchers_.size()));
-  findings_.Note("their memory in all, MiB",
-                 absl::StrFormat("%.1f", server_.ResidentMiB() - mib_without));
   Health("one job, all watching");
   EXPECT_EQ(FillQueue(client), queue_ - 1);
   findings_.Count("jobs in the full queue", queue_);
@@ -161,14 +146,9 @@ TEST_F(LiveWatchers, AllGetTheEndAndHealthAnswersWithAFullQueue) {
   }
 }
 
-// A server that would wait for them for an hour.
-class WatchersOfAPatientServer : public LiveWatchers {
- protected:
-  WatchersOfAPatientServer() : LiveWatchers(3600) {}
-};
-
-TEST_F(WatchersOfAPatientServer, DoNotDelayTheStop) {
-  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, server_.NewClient().Create(Endless()));
+TEST_F(LiveWatchers, DoNotDelayTheStopOfAServerThatWouldWaitAnHour) {
+  Start(3600);
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, server_->NewClient().Create(Endless()));
   Attach(Size(100, 1000), job.name());
   AwaitHeard(1);
   const double seconds = SecondsToStop("live watchers");
@@ -182,9 +162,10 @@ TEST_F(WatchersOfAPatientServer, DoNotDelayTheStop) {
 
 // The server waits for them until its time to drain is over.
 TEST_F(LiveWatchers, DelayTheStopByTheDrainAtMostIfTheyStall) {
+  Start(kDrainSeconds);
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job,
-                       server_.NewClient().Create(ManyPoints(20'000, 1'000)));
-  const StalledWatches stalled(20, server_.address(), job.name());
+                       server_->NewClient().Create(ManyPoints(20'000, 1'000)));
+  const StalledWatches stalled(20, server_->address(), job.name());
   const double seconds = SecondsToStop("stalled watchers");
   if (HoldsToTimes()) {
     EXPECT_LT(seconds, kDrainSeconds + 1);

@@ -3,7 +3,6 @@
 #include <sched.h>
 
 #include "tests/fault/torture/costs.h"
-#include "tests/fault/torture/preamble.h"
 
 namespace ballpiston::torture {
 namespace {

@@ -1,6 +1,5 @@
 // Stalled readers use bounded memory in the server, and no time of the engine.
 #include "tests/fault/torture/costs.h"
-#include "tests/fault/torture/preamble.h"
 #include "tests/fault/torture/stalled_watches.h"
 
 namespace ballpiston::torture {

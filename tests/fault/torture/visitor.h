@@ -6,6 +6,7 @@
 //   3. a cancellation that was acknowledged ends in CANCELLED;
 //   4. an end that was seen stays that end;
 //   5. a job that succeeded has the undisturbed answer, byte by byte, and its samples once.
+// tests/simulation checks more: lists, the messages of watches, and states in the order of calls.
 #pragma once
 
 #include <grpcpp/grpcpp.h>
@@ -13,7 +14,7 @@
 #include "client/library/client.h"
 #include "client/library/error_text.h"
 #include "client/library/request_id.h"
-#include "tests/fault/torture/preamble.h"
+#include "tests/fault/torture/questions.h"
 #include "tests/support/dice.h"
 
 namespace ballpiston::torture {
@@ -39,11 +40,8 @@ class Visitor {
     for (OwnJob& job : jobs_) {
       const auto ended =
           client_.Watch(job.name, {}, {.give_up_after = absl::FromChrono(kPatience)});
-      if (!ended.ok()) {
-        Wrong(job, absl::StrCat("at the end: ", ended.status().ToString()));
-        continue;
-      }
-      Learn(job, *ended, "the last watch");
+      if (!IsAnswered(job, "the last watch", ended)) continue;
+      Learn(job, *ended);
       Get(job);
       Fetch(job);
       AskAgain(job);
@@ -63,12 +61,11 @@ class Visitor {
     std::string name;
     bool cancelled = false;  // and acknowledged
     v1::EnsembleJob::State end = v1::EnsembleJob::STATE_UNSPECIFIED;
-    const char* end_from = "";  // the call that returned it
   };
 
   // More active jobs would only wait for the two cores.
   static constexpr int kMostActive = 3;
-  // Enough jobs for the lists, few enough to check all at the end.
+  // Few enough to check all at the end.
   static size_t MostKept() { return static_cast<size_t>(Size(6, 40)); }
 
   // A call that reaches a server just as it stops is CANCELLED by gRPC, without a reason.
@@ -99,12 +96,19 @@ class Visitor {
     const size_t index = dice_.Below(jobs_.size());
     OwnJob& job = jobs_[index];
     if (dice_.Chance(0.1)) return AskAgain(job);
-    if (dice_.Chance(0.05)) return List();
     if (!client::HasEnded(job.end)) {
       return dice_.Chance(0.2) ? Cancel(job) : dice_.Chance(0.5) ? Get(job) : Watch(job);
     }
     if (dice_.Chance(jobs_.size() < MostKept() ? 0.2 : 0.5)) return Delete(index);
     return dice_.Chance(0.5) ? Fetch(job) : Get(job);
+  }
+
+  // Whether the answer is OK. Another one is a broken promise.
+  template <typename Result>
+  bool IsAnswered(const OwnJob& job, const char* call, const Result& answer) {
+    const absl::Status status = StatusOf(answer);
+    if (!status.ok()) Wrong(job, absl::StrCat(call, ": ", status.ToString()));
+    return status.ok();
   }
 
   // The job of this request id, new or made before. `fresh`: not the answer of another client's
@@ -122,24 +126,23 @@ class Visitor {
     job.question = dice_.Below(exam_.questions.size());
     job.request_id = client::NewRequestId();
     const auto made = Ask(job);
-    if (!made.ok()) return Wrong(job, absl::StrCat("Create: ", made.status().ToString()));
+    if (!IsAnswered(job, "Create", made)) return;
     findings_.Count("jobs acknowledged");
     job.name = made->name();
-    Learn(job, *made, "Create");
+    Learn(job, *made);
     jobs_.push_back(std::move(job));
   }
 
   void AskAgain(const OwnJob& job) {
     const auto again = Ask(job);
-    if (!again.ok()) return Wrong(job, absl::StrCat("asked again: ", again.status().ToString()));
+    if (!IsAnswered(job, "asked again", again)) return;
     findings_.Count("request ids asked again");
     if (again->name() != job.name) Wrong(job, absl::StrCat("asked again, made ", again->name()));
   }
 
   void Get(OwnJob& job) {
     const auto seen = UntilAnswered([&] { return client_.Get(job.name); });
-    if (!seen.ok()) return Wrong(job, absl::StrCat("Get: ", seen.status().ToString()));
-    Learn(job, *seen, "Get");
+    if (IsAnswered(job, "Get", seen)) Learn(job, *seen);
   }
 
   // Until the end of the job or of the connection.
@@ -147,52 +150,35 @@ class Visitor {
     findings_.Count("watches");
     std::stop_source stop;
     client::WatchCallbacks callbacks;
-    callbacks.on_job = [&](const v1::EnsembleJob& seen) { Learn(job, seen, "Watch"); };
+    callbacks.on_job = [&](const v1::EnsembleJob& seen) { Learn(job, seen); };
     callbacks.on_disconnect = [&](const absl::Status&, absl::Duration) { stop.request_stop(); };
     const auto end = client_.Watch(job.name, callbacks, {}, stop.get_token());
     if (end.ok() && !client::HasEnded(job.end)) Wrong(job, "a watch was OK before the end");
-    if (!end.ok() && !WasNotAnswered(end.status())) {
-      Wrong(job, absl::StrCat("Watch: ", end.status().ToString()));
-    }
+    if (!WasNotAnswered(end.status())) IsAnswered(job, "Watch", end);
   }
 
   void Cancel(OwnJob& job) {
     const auto seen = UntilAnswered([&] { return client_.Cancel(job.name); });
-    if (seen.ok()) {
-      findings_.Count("cancellations acknowledged");
-      job.cancelled = true;
-      return Learn(job, *seen, "Cancel");
-    }
     if (client::ErrorReason(seen.status()) == "JOB_ALREADY_ENDED") return Get(job);
-    Wrong(job, absl::StrCat("Cancel: ", seen.status().ToString()));
+    if (!IsAnswered(job, "Cancel", seen)) return;
+    findings_.Count("cancellations acknowledged");
+    job.cancelled = true;
+    Learn(job, *seen);
   }
 
   void Delete(size_t index) {
     bool repeated = false;
     const absl::Status deleted =
         UntilAnswered([&] { return client_.Delete(jobs_[index].name); }, &repeated);
-    if (!deleted.ok() && !(repeated && absl::IsNotFound(deleted))) {
-      return Wrong(jobs_[index], absl::StrCat("Delete: ", deleted.ToString()));
-    }
+    const bool was_deleted_before = repeated && absl::IsNotFound(deleted);
+    if (!was_deleted_before && !IsAnswered(jobs_[index], "Delete", deleted)) return;
     findings_.Count("deletions acknowledged");
     jobs_.erase(jobs_.begin() + static_cast<std::ptrdiff_t>(index));
   }
 
-  void List() {
-    const auto listed = UntilAnswered([&] { return client_.List(); });
-    if (!listed.ok()) return findings_.Wrong(absl::StrCat("List: ", listed.status().ToString()));
-    findings_.Count("lists");
-    for (OwnJob& job : jobs_) {
-      const auto found =
-          std::find_if(listed->begin(), listed->end(),
-                       [&](const v1::EnsembleJob& seen) { return seen.name() == job.name; });
-      if (found != listed->end()) Learn(job, *found, "List");
-    }
-  }
-
   void Fetch(const OwnJob& job) {
     const auto points = UntilAnswered([&] { return client_.Results(job.name); });
-    if (!points.ok()) return Wrong(job, absl::StrCat("Results: ", points.status().ToString()));
+    if (!IsAnswered(job, "Results", points)) return;
     const Answer& expected = exam_.answers[job.question];
     for (const auto& [index, bytes] : AnswerOf(*points)) {
       if (expected.at(index) == bytes) continue;
@@ -204,13 +190,11 @@ class Visitor {
     }
   }
 
-  // `from`: the call that was answered.
-  void Learn(OwnJob& job, const v1::EnsembleJob& seen, const char* from) {
+  void Learn(OwnJob& job, const v1::EnsembleJob& seen) {
     if (seen.name() != job.name) Wrong(job, absl::StrCat("is answered as ", seen.name()));
     if (client::HasEnded(job.end) && seen.state() != job.end) {
-      Wrong(job,
-            absl::StrCat("ended as ", v1::EnsembleJob::State_Name(job.end), " by ", job.end_from,
-                         ", now ", v1::EnsembleJob::State_Name(seen.state()), " by ", from));
+      Wrong(job, absl::StrCat("ended as ", v1::EnsembleJob::State_Name(job.end), ", now ",
+                              v1::EnsembleJob::State_Name(seen.state())));
     }
     const bool given_up =
         seen.state() == v1::EnsembleJob::CANCELLED || seen.state() == v1::EnsembleJob::CANCELLING;
@@ -232,7 +216,6 @@ class Visitor {
       }
     }
     job.end = seen.state();
-    job.end_from = from;
   }
 
   void Wrong(const OwnJob& job, const std::string& what) {

@@ -1,7 +1,7 @@
 #include "server/cluster/slurm_workers.h"
 
 #include "tests/support/preamble.h"
-#include "tests/support/scoped_variable.h"
+#include "tests/support/scoped.h"
 
 namespace ballpiston::server {
 namespace {

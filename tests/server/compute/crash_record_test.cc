@@ -1,7 +1,6 @@
 #include "server/compute/crash_record.h"
 
 #include "server/fatal_signals.h"
-#include "tests/support/death_test_folder.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::server {

@@ -2,7 +2,7 @@
 
 #include "server/door/access_list.h"
 #include "tests/support/preamble.h"
-#include "tests/support/scoped_limit.h"
+#include "tests/support/scoped.h"
 
 namespace ballpiston::server {
 namespace {

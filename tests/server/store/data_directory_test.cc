@@ -4,8 +4,7 @@
 
 #include "server/store/folder_sync.h"
 #include "tests/support/preamble.h"
-#include "tests/support/scoped_limit.h"
-#include "tests/support/scoped_variable.h"
+#include "tests/support/scoped.h"
 
 namespace ballpiston::server {
 namespace {

@@ -1,7 +1,7 @@
 #include "server/worker/shared_files.h"
 
 #include "tests/support/preamble.h"
-#include "tests/support/scoped_limit.h"
+#include "tests/support/scoped.h"
 
 namespace ballpiston::server {
 namespace {

@@ -34,10 +34,13 @@ class WorkerProgramTest : public testing::Test {
     return options;
   }
 
-  // A limit of the process has the effect of a full disk.
+  // A limit of the process has the effect of a full disk. It is also that of files in memory, so
+  // the output goes through a pipe.
   ProcessOptions InAFullFolder(std::vector<std::string> further) const {
     ProcessOptions options = Command(std::move(further));
-    options.command.insert(options.command.begin(), {"/usr/bin/prlimit", "--fsize=100:100"});
+    options.command.insert(
+        options.command.begin(),
+        {"bash", "-o", "pipefail", "-c", "prlimit --fsize=100:100 \"$@\" 2>&1 | cat >&2", "bash"});
     return options;
   }
 
