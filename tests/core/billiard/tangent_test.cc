@@ -1,81 +1,8 @@
-// Tangent vectors of the lanes against those of the reference. The exponents are compared with
-// another program, and those of gases with differences of nearby orbits.
-#include <type_traits>
-
-#include "core/billiard/orbits.h"
 #include "core/billiard/tangent_plane.h"
-#include "core/gas/pair_tangents.h"
-#include "core/sampling/invariant_measure.h"
 #include "tests/core/preamble.h"
-#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
-
-constexpr size_t kCollisions = 4;
-
-struct Followed {
-  std::vector<std::array<double, 2>> growths = {};
-  uint64_t hits = 0;
-};
-
-template <typename Tangents>
-class RecordedGrowths : public NumberedOrbits {
- public:
-  RecordedGrowths(Engine engine, const PairGeometry& geometry, size_t orbits)
-      : geometry_(geometry), orbits_(orbits), tangents_(orbits) {
-    Run(engine, geometry, orbits);
-  }
-  const std::vector<Followed>& orbits() const { return orbits_; }
-
- private:
-  PairState Start(uint64_t orbit) override {
-    CounterRandom random(1, 2, orbit);
-    const PairState state = DrawFromCollisionMeasure(geometry_, random);
-    tangents_[orbit].emplace(geometry_, state);
-    return state;
-  }
-
-  AfterCollision Collide(uint64_t index, const Collision& collision) override {
-    tangents_[index]->Collide(collision);
-    const auto growth = tangents_[index]->TakeGrowth();
-    Followed& orbit = orbits_[index];
-    orbit.growths.push_back({growth[0], growth[1]});
-    orbit.hits += collision.ball_wall_hits;
-    return orbit.growths.size() < kCollisions ? AfterCollision::kGoOn : AfterCollision::kEnd;
-  }
-
-  bool FollowsTangents() const override { return true; }
-  void FollowEvent(uint64_t orbit, const Event& event, const PairState& after) override {
-    if constexpr (std::is_same_v<Tangents, PairTangents>) tangents_[orbit]->Follow(event, after);
-  }
-
-  PairGeometry geometry_;
-  std::vector<Followed> orbits_;
-  std::vector<std::optional<Tangents>> tangents_;
-};
-
-// Orbits of both engines agree for about 30 wall hits. Some of them have four collisions until
-// then. The third wait is the first one to which the signs of wall hits matter.
-TEST(TangentPlane, TheReflectionOfAnExchangeIsThatOfSixComponents) {
-  constexpr uint64_t kMostHits = 16;
-  const PairGeometry geometry = GeometryOf(0.53, 0.3);
-  const RecordedGrowths<PairTangents> reference(Engine::kReference, geometry, 5000);
-  const RecordedGrowths<TangentPlane> lanes(Engine::kLanes, geometry, 5000);
-  size_t compared = 0;
-  for (size_t i = 0; i < reference.orbits().size(); ++i) {
-    const Followed &expected = reference.orbits()[i], &orbit = lanes.orbits()[i];
-    if (expected.hits > kMostHits) continue;
-    ++compared;
-    EXPECT_EQ(orbit.hits, expected.hits);
-    for (size_t k = 0; k < kCollisions; ++k) {
-      for (const size_t vector : {0, 1}) {
-        EXPECT_NEAR(orbit.growths[k][vector], expected.growths[k][vector], 1e-5);
-      }
-    }
-  }
-  EXPECT_GT(compared, 50u);
-}
 
 // The growth of the two vectors over two equal waits with this map.
 std::array<double, 2> GrowthWithExponent(double exponent) {

@@ -1,7 +1,6 @@
 // What holds for every experiment by every model that samples, and for the answers without samples.
 #include "core/ensemble/point_experiment.h"
 
-#include "core/ensemble/random_stream.h"
 #include "core/experiment/all_experiments.h"
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
@@ -124,14 +123,11 @@ TEST_P(EachExperiment, ComputesTheRequestedSamples) {
 }
 
 TEST(PointExperiment, FewTrajectoriesReachAToleranceWithTheExpectedSamplesOnly) {
-  PointParameters gas = PaperGas(&kGasConduction, 0.2, {1, 65, true});
-  gas.Set(kHot, 1.5);
-  gas.Set(kCold, 0.5);
-  EnsembleSpec spec = SpecOf(&kGasConduction, gas, {.samples = 64}, Model::kMarkov);
+  EnsembleSpec spec = Asked("gas-conduction delta=0.2 cells=1x65 samples=64 model=markov");
   BlockResult merged = FoldPoint(*PointExperiment::Create(spec, 0));
   spec.target = {.tolerance = 0.5};  // the error is smaller
   const auto point = PointExperiment::Create(spec, 0);
-  const double expected = ScatterOf(spec, gas).SamplesFor(0.5);
+  const double expected = ScatterOf(spec, PointAt(spec, 0)).SamplesFor(0.5);
   for (const double share : {0.5, 1.0}) {
     merged.samples = point->plan().warm_up() + static_cast<uint64_t>(std::ceil(share * expected));
     EXPECT_EQ(point->ReachesTolerance(merged), share == 1);
@@ -224,16 +220,6 @@ TEST(PointExperiment, BlocksHoldWholeOrbitsOfExchanges) {
       EXPECT_GE(PointExperiment::Create(spec, 0)->plan().BlockAt(0, 0).samples, 32u) << delta;
     }
   }
-}
-
-// ---- random_stream.h ----
-
-TEST(PointStream, TheJumpProcessHasItsOwnRandomNumbers) {
-  const auto stream = [](Model model) {
-    return PointStream({.experiment = &kEnergyRelaxation, .model = model}, PaperPoint(0.1));
-  };
-  EXPECT_NE(stream(Model::kMarkov), stream(Model::kBilliard));
-  EXPECT_EQ(stream(Model::kBilliardReference), stream(Model::kBilliard));
 }
 
 }  // namespace
