@@ -20,7 +20,7 @@
 // The part of the second vector that remains after the subtraction is computed without cancellation
 // (tangent_plane.cc).
 //
-// Properties, each with a test of its name: 1. EveryEngineHasTheExponentsOfAnotherProgram.
+// Properties, each with a test of its name: 1. TheReflectionOfAnExchangeIsThatOfSixComponents.
 // 2. LongWaitsNeedNoRangeOfExponents.
 #pragma once
 

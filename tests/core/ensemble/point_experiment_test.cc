@@ -1,6 +1,7 @@
 // What holds for every experiment by every model that samples, and for the answers without samples.
 #include "core/ensemble/point_experiment.h"
 
+#include "core/ensemble/random_stream.h"
 #include "core/experiment/all_experiments.h"
 #include "tests/core/asked.h"
 #include "tests/core/preamble.h"
@@ -220,6 +221,16 @@ TEST(PointExperiment, BlocksHoldWholeOrbitsOfExchanges) {
       EXPECT_GE(PointExperiment::Create(spec, 0)->plan().BlockAt(0, 0).samples, 32u) << delta;
     }
   }
+}
+
+// ---- random_stream.h ----
+
+TEST(PointStream, TheJumpProcessHasItsOwnRandomNumbers) {
+  const auto stream = [](Model model) {
+    return PointStream({.experiment = &kEnergyRelaxation, .model = model}, PaperPoint(0.1));
+  };
+  EXPECT_NE(stream(Model::kMarkov), stream(Model::kBilliard));
+  EXPECT_EQ(stream(Model::kBilliardReference), stream(Model::kBilliard));
 }
 
 }  // namespace

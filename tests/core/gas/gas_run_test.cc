@@ -71,6 +71,26 @@ INSTANTIATE_TEST_SUITE_P(GasRun, GasRunOfEngine,
                          testing::Values(GasEngine::kReference, GasEngine::kLanes,
                                          GasEngine::kJumps));
 
+// A hand-made history: ball 0 gives the energy 4 to the piston on its right, and piston 0 turns at
+// a wall.
+TEST(GasMeter, CountsAndAveragesFromTheStartOfTheWindow) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "3");
+  GasMeter meter(gas, AtRest(gas));
+  const auto exchange = [&meter](double time, double ball_energy) {
+    meter.See({EventKind::kBallPiston, time, 0, 1, Direction::kRight, ball_energy, 0.5});
+  };
+  exchange(0.5, 7);
+  meter.Begin(0.5);
+  exchange(1, 3);
+  meter.See({.kind = EventKind::kPistonWall, .time = 2.5, .piston = 0, .piston_energy = 9});
+  meter.End(4.5);
+  EXPECT_EQ(meter.exchanges(), 1u);
+  EXPECT_DOUBLE_EQ(meter.carried(), 4);
+  EXPECT_DOUBLE_EQ(meter.MeanEnergy(0), (0.5 * 7 + 3.5 * 3) / 4);
+  EXPECT_DOUBLE_EQ(meter.MeanEnergy(3), 2 * 9 / 4.0);
+  EXPECT_DOUBLE_EQ(meter.MeanEnergy(4), 0.5);
+}
+
 // ---- current_meter.h ----
 
 TEST(CurrentSteps, StepsHoldTheWholeCurrent) {
@@ -83,6 +103,8 @@ TEST(CurrentSteps, StepsHoldTheWholeCurrent) {
     constant.AddOver(std::exchange(since, end), end, 2);
   }
   for (const double value : constant.values()) EXPECT_NEAR(value, 2 * constant.length(), 1e-13);
+  constant.AddAt(kDuration, 1);  // is in the last step
+  EXPECT_NEAR(constant.values().back(), 2 * constant.length() + 1, 1e-13);
 }
 
 // Two exchanges, three steps apart, and nothing else: their product counts from a window of three
@@ -93,7 +115,6 @@ TEST(CarriedCurrent, CountsProductsOfDifferentExchanges) {
   CarriedCurrent current(kCells, kRate, kStep * kCurrentSteps);
   current.Exchange({.time = 10.1 * kStep}, 6);
   current.Exchange({.time = 13.7 * kStep}, -4);
-  current.Exchange({.time = kStep * kCurrentSteps}, 0);  // is in the last step
   const GreenKubo result = current.Result();
   const double product = 3 * -2 / static_cast<double>(kCurrentSteps - 3);
   for (size_t lag = 0; lag <= kWindow; ++lag) {

@@ -158,5 +158,10 @@ TEST(ReferenceGas, AnEscapedBallStopsAndCountsOnce) {
   EXPECT_TRUE(InsideCell(gas.pair(), ball.position, 0));
 }
 
+TEST(ReferenceGas, AGasAtRestHasAnInfiniteNextTime) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2");
+  EXPECT_EQ(GasFrom(gas, AtRest(gas)).NextTime(), std::numeric_limits<double>::infinity());
+}
+
 }  // namespace
 }  // namespace ballpiston
