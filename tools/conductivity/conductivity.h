@@ -17,11 +17,11 @@
 //
 // Units: lengths in E, A and b are distances of neighbouring sites; the ratio has no unit.
 // Properties, each with the test that bears its name:
-//   1. StaticConductivityIsHalfTheExchangeRate.
-//   2. SpheresHaveThePublishedValue: Gaspard and Gilbert, Dynamical contribution to the heat
+//   1. StaticConductivityIsHalfTheExchangeRate.  2. FunctionsOfOnePairHaveTheirKnownValues.
+//   3. SpheresHaveThePublishedValue: Gaspard and Gilbert, Dynamical contribution to the heat
 //      conductivity in stochastic energy exchanges of locally confined gases (2017), -0.000373. The
 //      value here, -0.000372458, agrees within one unit of the last digit.
-//   3. QuickPlanAgreesWithTheConstants, and by night FinePlanGivesTheConstants.
+//   4. QuickPlanAgreesWithTheConstants, and by night FinePlanGivesTheConstants.
 #pragma once
 
 #include <vector>

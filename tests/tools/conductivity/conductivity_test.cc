@@ -1,5 +1,7 @@
 #include "tools/conductivity/conductivity.h"
 
+#include <Eigen/Cholesky>
+
 #include "tests/core/preamble.h"
 #include "tests/support/nightly.h"
 #include "tools/conductivity/contact_matrix.h"
@@ -26,6 +28,22 @@ TEST(Conductivity, StaticConductivityIsHalfTheExchangeRate) {
     const GalerkinForm form(chain, ClusterBasis(chain, Clusters(chain, 2), {.degree = 3}));
     EXPECT_NEAR(form.field_energy(), kContactRate, 1e-14);
   }
+}
+
+// Functions of one ball and one neighbouring piston. In a square lattice the pairs along y have no
+// effect. Another program computed these values before, to three digits.
+TEST(Conductivity, FunctionsOfOnePairHaveTheirKnownValues) {
+  const auto pairs = [](const SiteLattice& lattice) {
+    const GalerkinForm form = PairsOf(lattice, 16);
+    Eigen::MatrixXd matrix(form.field().size(), form.field().size());
+    for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
+      matrix.col(k) = form.Apply(Eigen::VectorXd::Unit(matrix.rows(), k));
+    }
+    return -form.field().dot(matrix.llt().solve(form.field())) / form.field_energy();
+  };
+  EXPECT_NEAR(pairs(BallPistonChain()), -0.00132, 1e-5);
+  EXPECT_NEAR(pairs(BallPistonLattice()), -0.00093, 1e-5);
+  EXPECT_NEAR(ConductivityBound(BallPistonChain(), {2, 2}, 16), pairs(BallPistonChain()), 1e-12);
 }
 
 TEST(Conductivity, RefinementSumsTheLimitsOfItsSteps) {
