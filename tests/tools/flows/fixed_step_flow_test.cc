@@ -125,5 +125,18 @@ TEST(FixedStepGas, ABallThatHasPassedAPistonExchanges) {
   }
 }
 
+TEST(FixedStepGas, ALostBallStops) {
+  const GasGeometry cusps = GasOf(0.5001, 0.2, "2");
+  GasState state;
+  state.balls = {{.position = {0, 0}, .direction = {1, 0}, .speed = 1}, {}};
+  state.pistons = {{.offset = cusps.reach()}, {.offset = cusps.reach()}};
+  FixedStepGas gas(cusps, state, ThermalWalls(), 0.51);
+  const GasEvent event = gas.Step();
+  EXPECT_EQ(event.kind, EventKind::kEscape);
+  const double x = gas.BallAt(0, event.time).position.x();
+  EXPECT_EQ(gas.NextTime(), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(gas.BallAt(0, event.time).position.x(), x);
+}
+
 }  // namespace
 }  // namespace ballpiston
