@@ -66,6 +66,25 @@ TEST(MethodComparison, CurvesAreInOrderWithIncreasingSamples) {
   EXPECT_EQ(curves, expected);
 }
 
+TEST(MethodComparison, WorkIsMeasuredAndErrorsAreReported) {
+  for (const MethodMeasurement& m : Measurements()) {
+    EXPECT_GT(m.work, 0);
+    const bool is_computed = m.method == kClosedForm || m.method == kSpectrum;
+    EXPECT_EQ(m.samples == 0, is_computed);
+    EXPECT_EQ(m.wall_hits == 0, m.quantity >= Quantity::kRelaxationTime || is_computed);
+    EXPECT_EQ(m.statistical_error == 0, m.method == kClosedForm);
+    EXPECT_EQ(m.method.time_step > 0, m.method.name == std::string("fixed-step"));
+    if (m.quantity < Quantity::kRelaxationTime) {
+      EXPECT_EQ(m.own_error, m.statistical_error);
+    }
+    if (m.quantity != Quantity::kTrajectory) {
+      EXPECT_EQ(m.bias_resolved, m.value > 3 * m.statistical_error);
+    } else {
+      EXPECT_EQ(m.bias_resolved, std::nullopt);
+    }
+  }
+}
+
 // About 60 measurements: one in 2e3 seeds would fail, and the seed is fixed.
 TEST(MethodComparison, EnginesStayWithinTheirStatisticalErrors) {
   for (const MethodMeasurement& m : Measurements()) {
@@ -100,6 +119,13 @@ TEST(MethodComparison, TheLimitHasABiasThatFallsWithDelta) {
   std::map<double, MethodMeasurement> limit = Spectra();
   EXPECT_GT(limit[0.3].value, 3 * limit[0.3].statistical_error);
   EXPECT_LT(limit[0.2].value, limit[0.3].value);
+}
+
+TEST(MethodComparison, DefaultDeltasArePermitted) {
+  EXPECT_EQ(GasDelta(kPaperRho), 0.2);
+  EXPECT_EQ(GasDelta(0.65), GasDeltaBound(0.65));
+  EXPECT_THAT(DefaultRelaxationDeltas(kPaperRho), ElementsAre(0.2, 0.1, 0.05, 0.025));
+  EXPECT_THAT(DefaultRelaxationDeltas(0.65), ElementsAre(0.05, 0.025));
 }
 
 }  // namespace
