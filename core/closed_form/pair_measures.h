@@ -16,7 +16,7 @@
 //
 // Properties, each with the test that bears its name:
 //   1. AccurateForEveryGeometry: relative error below kPairMeasuresRelativeError.
-//   2. RareCollisionsSeeAWedge: |dG_bp| = sqrt(2) lambda delta^2 as delta -> 0.
+//   2. RareLimitRateIsTheLimitOfTheRate: |dG_bp| = sqrt(2) lambda delta^2 as delta -> 0.
 // |dG_bp|/sqrt(2) is half of the cell at delta = (1 - lambda)/2; |dG_pw| + |dG_bp|/sqrt(2) is twice
 // the cell; d|G|/d delta = |dG_pw|.
 //

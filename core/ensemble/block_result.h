@@ -6,7 +6,6 @@
 // the state of its group, from which the group's next block starts. Merging keeps the newer state.
 // Properties, each with a test of its name:
 //   1. MergeKeepsEverySampleAndHasAnIdentity.  2. EqualResultsHaveEqualNumbersAndShapes.
-//   3. TheNewerStateOfAGroupReplacesTheOlder.
 #pragma once
 
 #include <cstdint>

@@ -1,18 +1,24 @@
-// Runs a whole point, as the server does. Also has the headers of points and of their questions.
+// Runs a whole point, as the server does. A question as text stands for its first point.
 #pragma once
 
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
-#include "tests/core/one_point_spec.h"
+#include "tests/core/asked.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston {
+
+inline std::unique_ptr<const PointExperiment> PointOf(const std::string& question) {
+  return PointExperiment::Create(Asked(question), 0);
+}
 
 inline PointSummary RunPoint(const EnsembleSpec& spec) {
   const auto point = PointExperiment::Create(spec, 0);
   return point->Summarize(FoldPoint(*point));
 }
+
+inline PointSummary RunPoint(const std::string& question) { return RunPoint(Asked(question)); }
 
 // The summary of measured samples by the spec's experiment.
 inline PointSummary Summarized(const EnsembleSpec& spec, const BlockResult& merged) {

@@ -41,9 +41,6 @@ class ChainByQuadrature {
     }
   }
 
-  // Mean fraction of a cell that a piston takes from the cell on one of its sides.
-  double MeanFraction() const { return taken_left_.dot(weights_) / (stroke() * cell_area()); }
-
   // The rate of a contact at temperature T in a ring of so many cells: its flux sqrt(T/pi), times
   // the density of ball and piston on their collision surface.
   double RateOfRing(int cells, double temperature) const {
@@ -56,7 +53,6 @@ class ChainByQuadrature {
 
  private:
   double cell_area() const { return static_cast<double>(cell_area_); }
-  double stroke() const { return static_cast<double>(lambda_ + 2 * delta_); }
 
   // The area between the tip and a depth, and the height of the cell there.
   Quad HeightAt(Quad depth) const {

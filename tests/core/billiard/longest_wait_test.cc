@@ -1,43 +1,26 @@
 #include "core/billiard/longest_wait.h"
 
 #include "core/experiment/returns.h"
+#include "tests/core/billiard/recorded_collisions.h"
 #include "tests/core/preamble.h"
-#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
-
-// Returns at a piston's energy, and the largest share of the longest wait that an orbit has waited.
-struct Returns : NumberedOrbits {
-  Returns(const PairGeometry& geometry, double epsilon)
-      : starts{geometry, epsilon, 1, {.seed = 5, .stream = 6}}, longest(geometry) {}
-
-  PairState Start(uint64_t orbit) override {
-    const PairState state = starts.Draw(orbit);
-    limits.push_back(longest.From(state));
-    return state;
-  }
-  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
-    lost += collision.escaped;
-    share = std::max(share, collision.time / limits[orbit]);
-    return AfterCollision::kEnd;
-  }
-
-  const ReturnStarts starts;
-  const LongestWait longest;
-  std::vector<double> limits;
-  double share = 0;
-  int lost = 0;
-};
 
 // The test expects that no return takes more than a share of 0.05 of the longest wait. If return
 // times have an exponential law, the longest of n = 500 takes about log n = 6 time scales, which is
 // a share of 0.006. A return of a share of 0.05 then has the probability e^-50.
 void ExpectShort(const PairGeometry& geometry, double epsilon) {
-  Returns returns(geometry, epsilon);
-  ASSERT_TRUE(returns.Run(Engine::kLanes, geometry, 500));
-  EXPECT_EQ(returns.lost, 0);
-  EXPECT_LT(returns.share, 0.05) << geometry.rho() << " " << epsilon;
+  const ReturnStarts starts = {geometry, epsilon, 1, {.seed = 5, .stream = 6}};
+  const LongestWait longest(geometry);
+  const auto start = [&](uint64_t orbit) { return starts.Draw(orbit); };
+  const auto returns = Recorded(Engine::kLanes, geometry, 500, {.start = start});
+  for (uint64_t orbit = 0; orbit < returns.size(); ++orbit) {
+    const Collision& collision = returns[orbit].at(0);
+    EXPECT_FALSE(collision.escaped);
+    EXPECT_LT(collision.time, 0.05 * longest.From(start(orbit)))
+        << geometry.rho() << " " << epsilon;
+  }
 }
 
 TEST(LongestWait, EveryOrbitOfTheBilliardIsShorter) {

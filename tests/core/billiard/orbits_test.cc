@@ -3,15 +3,14 @@
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/recorded_collisions.h"
 #include "tests/core/preamble.h"
-#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
 
-void ExpectCollisionsOnTheSurface(const PairGeometry& geometry, const RecordedCollisions& recorded,
-                                  size_t collisions_of_an_orbit, double rounding) {
-  for (const auto& collisions : recorded.by_orbit()) {
-    ASSERT_EQ(collisions.size(), collisions_of_an_orbit);
+void ExpectThreeCollisionsOnTheSurface(const PairGeometry& geometry,
+                                       const CollisionsByOrbit& recorded, double rounding) {
+  for (const auto& collisions : recorded) {
+    ASSERT_EQ(collisions.size(), 3u);
     for (const Collision& collision : collisions) {
       const PairState& state = collision.state;
       ASSERT_FALSE(collision.escaped);
@@ -30,7 +29,8 @@ TEST(Orbits, EveryOrbitMeetsThePistonOnTheCollisionSurface) {
     for (const uint64_t orbits :
          {1u, 2u, 11u, 12u, 13u, 23u, 24u, 25u, 47u, 48u, 49u, 95u, 96u, 97u, 1000u}) {
       SCOPED_TRACE(testing::Message() << orbits << " by engine " << static_cast<int>(engine));
-      ExpectCollisionsOnTheSurface(geometry, Recorded(engine, geometry, orbits, 3), 3, rounding);
+      ExpectThreeCollisionsOnTheSurface(
+          geometry, Recorded(engine, geometry, orbits, {.collisions = 3}), rounding);
     }
   }
 }
@@ -52,14 +52,13 @@ TEST(Orbits, LanesMeetThePistonWhereTheReferenceDoes) {
   int compared = 0, at_once = 0, later = 0;
   for (const double delta : {0.1, 0.2, 0.32}) {
     const PairGeometry geometry = PaperGeometry(delta);
-    const RecordedCollisions reference = Recorded(Engine::kReference, geometry, kOrbits, 3);
+    const auto reference = Recorded(Engine::kReference, geometry, kOrbits, {.collisions = 3});
     ForEachFusedTarget([&] {
-      const RecordedCollisions lanes = Recorded(Engine::kLanes, geometry, kOrbits, 3);
+      const auto lanes = Recorded(Engine::kLanes, geometry, kOrbits, {.collisions = 3});
       for (uint64_t orbit = 0; orbit < kOrbits; ++orbit) {
         uint64_t hits = 0;
         for (size_t i = 0; i < 3; ++i) {
-          const Collision &first = reference.by_orbit()[orbit][i],
-                          &second = lanes.by_orbit()[orbit][i];
+          const Collision &first = reference[orbit][i], &second = lanes[orbit][i];
           hits += first.ball_wall_hits;
           if (hits > kMostHits) break;
           ExpectNear(first, second, 1e-8);
@@ -75,52 +74,34 @@ TEST(Orbits, LanesMeetThePistonWhereTheReferenceDoes) {
   EXPECT_GT(later, 100);
 }
 
-TEST(Orbits, PauseEndsARun) {
-  class Pauses : public RecordedCollisions {
-   public:
-    using RecordedCollisions::RecordedCollisions;
-    bool Pause() override { return true; }
-  };
-  const PairGeometry geometry = PaperGeometry(1e-7);
-  for (const Engine engine : kEngines) {
-    EXPECT_FALSE(Pauses(geometry, 10, 1).Run(engine, geometry, 10));
-  }
+// Stops a run that does not end. A run that can end needs fewer looks.
+std::function<bool()> AfterManyLooks() {
+  return [looks = 0]() mutable { return ++looks > 500; };
 }
 
-class CollisionsWithin : public RecordedCollisions {
- public:
-  CollisionsWithin(double limit, const PairGeometry& geometry, uint64_t orbits, size_t collisions)
-      : RecordedCollisions(geometry, orbits, collisions), limit_(limit) {}
-  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
-    const AfterCollision after = RecordedCollisions::Collide(orbit, collision);
-    return collision.expired ? AfterCollision::kEnd : after;
+TEST(Orbits, PauseEndsARun) {
+  for (const Engine engine : kEngines) {
+    EXPECT_FALSE(
+        RecordedCollisions(PaperGeometry(1e-7), 10, {.pause = [] { return true; }}).RunBy(engine));
   }
-  double TimeLimit() const override { return limit_; }
-
- private:
-  double limit_;
-};
+}
 
 // In single precision the lanes cannot resolve a cell that nearly vanishes. With a limit an orbit
 // that only waits too long has not escaped.
 TEST(Orbits, EscapesInLanesAreReported) {
-  class UntilAnEscape : public CollisionsWithin {
-   public:
-    using CollisionsWithin::CollisionsWithin;
-    bool has_escaped() const {
-      return std::ranges::any_of(by_orbit(), [](const auto& collisions) {
-        return !collisions.empty() && collisions.back().escaped;
-      });
-    }
-    bool Pause() override { return ++looks_ == 10'000 || has_escaped(); }
-
-   private:
-    int looks_ = 0;
+  int looks = 0;
+  std::function<bool()> has_escape;
+  RecordedCollisions single(GeometryAtShare(kMaxRho - 1e-5, 1), 300,
+                            {.collisions = 20, .time_limit = 10, .pause = [&] {
+                               return ++looks == 10'000 || has_escape();
+                             }});
+  has_escape = [&single] {
+    return std::ranges::any_of(single.by_orbit(), [](const auto& collisions) {
+      return !collisions.empty() && collisions.back().escaped;
+    });
   };
-  const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-5, 1);
-  UntilAnEscape single(10, geometry, 300, 20);
-  EXPECT_FALSE(single.Run(Engine::kLanesSingle, geometry, 300));
-  EXPECT_TRUE(single.has_escaped());
+  EXPECT_FALSE(single.RunBy(Engine::kLanesSingle));
+  EXPECT_TRUE(has_escape());
 }
 
 // In all engines and vector widths every orbit is the same as without a limit up to the first
@@ -131,13 +112,13 @@ TEST(Orbits, TimeLimitChangesNothingWithinIt) {
   constexpr double kLimit = 100;  // the mean free time is 97
   const PairGeometry geometry = PaperGeometry(0.1);
   for (const Engine engine : kEngines) {
-    const RecordedCollisions free = Recorded(engine, geometry, kOrbits, kCollisions);
+    const auto free = Recorded(engine, geometry, kOrbits, {.collisions = kCollisions});
     ForEachFusedTarget([&] {
-      CollisionsWithin limited(kLimit, geometry, kOrbits, kCollisions);
-      ASSERT_TRUE(limited.Run(engine, geometry, kOrbits));
+      const auto limited =
+          Recorded(engine, geometry, kOrbits, {.collisions = kCollisions, .time_limit = kLimit});
       uint64_t expired = 0;
       for (uint64_t orbit = 0; orbit < kOrbits; ++orbit) {
-        const auto &all = free.by_orbit()[orbit], &some = limited.by_orbit()[orbit];
+        const auto &all = free[orbit], &some = limited[orbit];
         size_t i = 0;
         for (; i < kCollisions && all[i].time <= kLimit; ++i) {
           ASSERT_LT(i, some.size());
@@ -155,26 +136,6 @@ TEST(Orbits, TimeLimitChangesNothingWithinIt) {
     });
   }
 }
-
-// Starts each of the given pairs once. Stops the run after kMostLooks calls of Pause; a run that
-// can end needs fewer.
-class GivenPairs : public NumberedOrbits {
- public:
-  explicit GivenPairs(std::vector<PairState> pairs) : pairs_(std::move(pairs)) {}
-  PairState Start(uint64_t orbit) override { return pairs_[orbit]; }
-  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
-    EXPECT_TRUE(ends_.emplace(orbit, collision).second);
-    return AfterCollision::kEnd;
-  }
-  bool Pause() override { return ++looks_ > kMostLooks; }
-  const std::map<uint64_t, Collision>& ends() const { return ends_; }
-
- private:
-  static constexpr int kMostLooks = 500;
-  std::vector<PairState> pairs_;
-  int looks_ = 0;
-  std::map<uint64_t, Collision> ends_;  // by orbit
-};
 
 // A ball at rest, and when the piston meets it.
 struct AtRest {
@@ -215,14 +176,14 @@ TEST(Orbits, ThePistonMeetsABallAtRestAtItsPlace) {
   for (const double delta : {1e-10, 1e-3, 0.05, 0.2}) {
     const PairGeometry geometry = PaperGeometry(delta);
     const std::vector<AtRest> balls = BallsAtRest(geometry);
-    std::vector<PairState> pairs;
-    for (const AtRest& ball : balls) pairs.push_back(ball.pair);
     for (const Engine engine : kEngines) {
-      GivenPairs source(pairs);
-      ASSERT_TRUE(source.Run(engine, geometry, pairs.size()));
-      ASSERT_EQ(source.ends().size(), pairs.size());
-      for (const auto& [orbit, collision] : source.ends()) {
-        const AtRest& ball = balls[orbit];
+      const auto recorded =
+          Recorded(engine, geometry, balls.size(),
+                   {.start = [&](uint64_t i) { return balls[i].pair; }, .pause = AfterManyLooks()});
+      for (size_t i = 0; i < balls.size(); ++i) {
+        const AtRest& ball = balls[i];
+        ASSERT_EQ(recorded[i].size(), 1u);
+        const Collision& collision = recorded[i].front();
         ASSERT_FALSE(collision.escaped);
         EXPECT_NEAR(collision.time, ball.time,
                     engine == Engine::kLanesSingle ? ball.error_in_single : 1e-14);
@@ -249,12 +210,12 @@ TEST(Orbits, OrbitsThatCannotEndAreLost) {
       {.position = {0, 0}, .ball_speed = 0, .piston = 0.5, .piston_velocity = 1},
       {.position = {-0.9, 0}, .direction = {-1, 0}, .ball_speed = 1, .piston = 0.5}};
   for (const Engine engine : kEngines) {
-    GivenPairs source(pairs);
-    ASSERT_TRUE(source.Run(engine, geometry, pairs.size()));
-    ASSERT_EQ(source.ends().size(), pairs.size());
-    for (const auto& [orbit, collision] : source.ends()) {
-      EXPECT_TRUE(collision.escaped);
-      EXPECT_FALSE(collision.expired);
+    for (const auto& collisions :
+         Recorded(engine, geometry, pairs.size(),
+                  {.start = [&](uint64_t i) { return pairs[i]; }, .pause = AfterManyLooks()})) {
+      ASSERT_EQ(collisions.size(), 1u);
+      EXPECT_TRUE(collisions[0].escaped);
+      EXPECT_FALSE(collisions[0].expired);
     }
   }
 }

@@ -1,4 +1,4 @@
-// Orbits of a few collisions from equilibrium, and all collisions that they reported.
+// Orbits, and all collisions that they reported.
 #pragma once
 
 #include "core/sampling/invariant_measure.h"
@@ -9,34 +9,52 @@ namespace ballpiston {
 
 inline constexpr Engine kEngines[] = {Engine::kReference, Engine::kLanes, Engine::kLanesSingle};
 
+inline PairState StartInEquilibrium(const PairGeometry& geometry, uint64_t orbit) {
+  CounterRandom random(7, 8, orbit);
+  return DrawFromCollisionMeasure(geometry, random);
+}
+
+struct OrbitOptions {
+  size_t collisions = 1;                                // of an orbit
+  std::function<PairState(uint64_t orbit)> start = {};  // without it in equilibrium
+  double time_limit = HUGE_VAL;
+  OrbitDevice* device = nullptr;
+  std::function<bool()> pause = [] { return false; };
+};
+
+using CollisionsByOrbit = std::vector<std::vector<Collision>>;
+
 class RecordedCollisions : public NumberedOrbits {
  public:
-  RecordedCollisions(const PairGeometry& geometry, uint64_t orbits, size_t collisions)
-      : geometry_(geometry), collisions_(collisions), by_orbit_(orbits) {}
+  RecordedCollisions(const PairGeometry& geometry, uint64_t orbits, OrbitOptions options)
+      : geometry_(geometry), options_(std::move(options)), by_orbit_(orbits) {}
+
+  bool RunBy(Engine engine) { return Run(engine, geometry_, by_orbit_.size()); }
+  const CollisionsByOrbit& by_orbit() const { return by_orbit_; }
 
   PairState Start(uint64_t orbit) override {
-    CounterRandom random(7, 8, orbit);
-    return DrawFromCollisionMeasure(geometry_, random);
+    return options_.start ? options_.start(orbit) : StartInEquilibrium(geometry_, orbit);
   }
-
   AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
     by_orbit_[orbit].push_back(collision);
-    return by_orbit_[orbit].size() < collisions_ ? AfterCollision::kGoOn : AfterCollision::kEnd;
+    const bool is_last = by_orbit_[orbit].size() >= options_.collisions;
+    return is_last ? AfterCollision::kEnd : AfterCollision::kGoOn;
   }
-
-  const std::vector<std::vector<Collision>>& by_orbit() const { return by_orbit_; }
+  double TimeLimit() const override { return options_.time_limit; }
+  OrbitDevice* Device() const override { return options_.device; }
+  bool Pause() override { return options_.pause(); }
 
  private:
   PairGeometry geometry_;
-  size_t collisions_;
-  std::vector<std::vector<Collision>> by_orbit_;
+  OrbitOptions options_;
+  CollisionsByOrbit by_orbit_;
 };
 
-inline RecordedCollisions Recorded(Engine engine, const PairGeometry& geometry, uint64_t orbits,
-                                   size_t collisions) {
-  RecordedCollisions recorded(geometry, orbits, collisions);
-  EXPECT_TRUE(recorded.Run(engine, geometry, orbits));
-  return recorded;
+inline CollisionsByOrbit Recorded(Engine engine, const PairGeometry& geometry, uint64_t orbits,
+                                  OrbitOptions options) {
+  RecordedCollisions recorded(geometry, orbits, std::move(options));
+  EXPECT_TRUE(recorded.RunBy(engine));
+  return recorded.by_orbit();
 }
 
 inline void ExpectSameBits(const Collision& first, const Collision& second) {

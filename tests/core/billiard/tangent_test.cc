@@ -2,57 +2,54 @@
 // another program, and those of gases with differences of nearby orbits.
 #include <type_traits>
 
-#include "core/billiard/orbits.h"
 #include "core/billiard/tangent_plane.h"
 #include "core/gas/pair_tangents.h"
-#include "core/sampling/invariant_measure.h"
+#include "tests/core/billiard/recorded_collisions.h"
 #include "tests/core/preamble.h"
-#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
 
 constexpr size_t kCollisions = 4;
 
-struct Followed {
-  std::vector<std::array<double, 2>> growths = {};
-  uint64_t hits = 0;
-};
-
+// The collisions of orbits, and the growth of the first two vectors in each wait.
 template <typename Tangents>
-class RecordedGrowths : public NumberedOrbits {
+class RecordedGrowths : public RecordedCollisions {
  public:
   RecordedGrowths(Engine engine, const PairGeometry& geometry, size_t orbits)
-      : geometry_(geometry), orbits_(orbits), tangents_(orbits) {
-    Run(engine, geometry, orbits);
+      : RecordedCollisions(geometry, orbits, {.collisions = kCollisions}),
+        geometry_(geometry),
+        tangents_(orbits),
+        growths_(orbits) {
+    EXPECT_TRUE(RunBy(engine));
   }
-  const std::vector<Followed>& orbits() const { return orbits_; }
+  const std::vector<std::array<double, 2>>& growths(size_t orbit) const { return growths_[orbit]; }
+  uint64_t HitsOf(size_t orbit) const {
+    uint64_t hits = 0;
+    for (const Collision& collision : by_orbit()[orbit]) hits += collision.ball_wall_hits;
+    return hits;
+  }
 
  private:
   PairState Start(uint64_t orbit) override {
-    CounterRandom random(1, 2, orbit);
-    const PairState state = DrawFromCollisionMeasure(geometry_, random);
+    const PairState state = RecordedCollisions::Start(orbit);
     tangents_[orbit].emplace(geometry_, state);
     return state;
   }
-
-  AfterCollision Collide(uint64_t index, const Collision& collision) override {
-    tangents_[index]->Collide(collision);
-    const auto growth = tangents_[index]->TakeGrowth();
-    Followed& orbit = orbits_[index];
-    orbit.growths.push_back({growth[0], growth[1]});
-    orbit.hits += collision.ball_wall_hits;
-    return orbit.growths.size() < kCollisions ? AfterCollision::kGoOn : AfterCollision::kEnd;
+  AfterCollision Collide(uint64_t orbit, const Collision& collision) override {
+    tangents_[orbit]->Collide(collision);
+    const auto growth = tangents_[orbit]->TakeGrowth();
+    growths_[orbit].push_back({growth[0], growth[1]});
+    return RecordedCollisions::Collide(orbit, collision);
   }
-
   bool FollowsTangents() const override { return true; }
   void FollowEvent(uint64_t orbit, const Event& event, const PairState& after) override {
     if constexpr (std::is_same_v<Tangents, PairTangents>) tangents_[orbit]->Follow(event, after);
   }
 
   PairGeometry geometry_;
-  std::vector<Followed> orbits_;
   std::vector<std::optional<Tangents>> tangents_;
+  std::vector<std::vector<std::array<double, 2>>> growths_;  // by orbit
 };
 
 // Orbits of both engines agree for about 30 wall hits. Some of them have four collisions until
@@ -63,14 +60,13 @@ TEST(TangentPlane, TheReflectionOfAnExchangeIsThatOfSixComponents) {
   const RecordedGrowths<PairTangents> reference(Engine::kReference, geometry, 5000);
   const RecordedGrowths<TangentPlane> lanes(Engine::kLanes, geometry, 5000);
   size_t compared = 0;
-  for (size_t i = 0; i < reference.orbits().size(); ++i) {
-    const Followed &expected = reference.orbits()[i], &orbit = lanes.orbits()[i];
-    if (expected.hits > kMostHits) continue;
+  for (size_t i = 0; i < 5000; ++i) {
+    if (reference.HitsOf(i) > kMostHits) continue;
     ++compared;
-    EXPECT_EQ(orbit.hits, expected.hits);
+    EXPECT_EQ(lanes.HitsOf(i), reference.HitsOf(i));
     for (size_t k = 0; k < kCollisions; ++k) {
       for (const size_t vector : {0, 1}) {
-        EXPECT_NEAR(orbit.growths[k][vector], expected.growths[k][vector], 1e-5);
+        EXPECT_NEAR(lanes.growths(i)[k][vector], reference.growths(i)[k][vector], 1e-5);
       }
     }
   }

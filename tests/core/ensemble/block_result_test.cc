@@ -21,12 +21,14 @@ BlockResult Sample(double x) {
   return result;
 }
 
+// The newer state of a group replaces the older one.
 TEST(BlockResult, MergeKeepsEverySampleAndHasAnIdentity) {
   BlockResult merged;
   merged.Merge(Sample(1));
   EXPECT_EQ(merged, Sample(1));
   merged.Merge({});
   EXPECT_EQ(merged, Sample(1));
+  merged.groups[0] = GroupState({7});
   merged.Merge(Sample(2));
   EXPECT_EQ(merged.samples, 4u);
   EXPECT_EQ(merged.moments[0].count, 4u);
@@ -35,16 +37,7 @@ TEST(BlockResult, MergeKeepsEverySampleAndHasAnIdentity) {
   EXPECT_EQ(merged.histograms[0].counts, (std::vector<uint64_t>{0, 1, 2, 0, 1, 0, 0, 0, 0, 0}));
   EXPECT_EQ(merged.health.escapes, 2u);
   EXPECT_EQ(merged.health.max_energy_error, 2);
-}
-
-TEST(BlockResult, TheNewerStateOfAGroupReplacesTheOlder) {
-  BlockResult merged, first, second;
-  first.groups = {GroupState({1}), GroupState({2}), {}};
-  second.groups = {{}, GroupState({3}), GroupState({4})};
-  merged.Merge(first);
-  merged.Merge(second);
-  EXPECT_EQ(merged.groups,
-            (std::vector<GroupState>{GroupState({1}), GroupState({3}), GroupState({4})}));
+  EXPECT_EQ(merged.groups, (std::vector<GroupState>{GroupState({7}), GroupState({2, 2})}));
 }
 
 struct Change {

@@ -124,14 +124,11 @@ TEST_P(EachExperiment, ComputesTheRequestedSamples) {
 }
 
 TEST(PointExperiment, FewTrajectoriesReachAToleranceWithTheExpectedSamplesOnly) {
-  PointParameters gas = PaperGas(&kGasConduction, 0.2, {1, 65, true});
-  gas.Set(kHot, 1.5);
-  gas.Set(kCold, 0.5);
-  EnsembleSpec spec = SpecOf(&kGasConduction, gas, {.samples = 64}, Model::kMarkov);
+  EnsembleSpec spec = Asked("gas-conduction delta=0.2 cells=1x65 samples=64 model=markov");
   BlockResult merged = FoldPoint(*PointExperiment::Create(spec, 0));
   spec.target = {.tolerance = 0.5};  // the error is smaller
   const auto point = PointExperiment::Create(spec, 0);
-  const double expected = ScatterOf(spec, gas).SamplesFor(0.5);
+  const double expected = ScatterOf(spec, PointAt(spec, 0)).SamplesFor(0.5);
   for (const double share : {0.5, 1.0}) {
     merged.samples = point->plan().warm_up() + static_cast<uint64_t>(std::ceil(share * expected));
     EXPECT_EQ(point->ReachesTolerance(merged), share == 1);

@@ -295,9 +295,7 @@ TEST(GasConduction, AWindowOfTheChargeIsStatedFromEnoughLongWindowsOn) {
 // ---- samples that continue each other: steady_gas.h, steady_group.h ----
 
 TEST(SteadyGas, ADamagedStateCannotContinue) {
-  const auto point = PointExperiment::Create(
-      SpecOf(&kGasConduction, PaperGas(&kGasConduction, 0.2), {.samples = 1}, Model::kBilliard, 5),
-      0);
+  const auto point = PointOf("gas-conduction delta=0.2 samples=1 model=billiard seed=5");
   const GroupState state = FoldPoint(*point).groups[3];
   EXPECT_TRUE(point->CanContinue(state));
   EXPECT_FALSE(point->CanContinue({}));

@@ -5,10 +5,6 @@
 namespace ballpiston {
 namespace {
 
-EnsembleSpec AskedAt(double rho, double delta, int64_t collisions, Model model) {
-  return SpecOf(&kLyapunov, {{kRho, rho}, {kDelta, delta}}, {.collisions = collisions}, model);
-}
-
 double ValueOf(const std::string& name, const PointSummary& summary) {
   return Named(name, summary.estimates).value;
 }
@@ -36,7 +32,8 @@ TEST(Lyapunov, EveryEngineHasTheExponentsOfAnotherProgram) {
         {Model::kBilliard, Precision::kSingle, 50'000},
         {Model::kBilliardReference, Precision::kDouble, 10'000}}) {
     for (const Reference& reference : kReferences) {
-      EnsembleSpec spec = AskedAt(0.53, reference.delta, collisions, model);
+      EnsembleSpec spec = Asked(absl::StrCat("lyapunov rho=0.53 delta=", reference.delta,
+                                             " collisions=", collisions, " model=", Name(model)));
       spec.precision = precision;
       const PointSummary summary = RunPoint(spec);
       ExpectNear(Named("lyapunov_1", summary.estimates), reference.first, reference.first_error);
@@ -50,7 +47,8 @@ TEST(Lyapunov, EveryEngineHasTheExponentsOfAnotherProgram) {
 }
 
 TEST(Lyapunov, ExponentsOfACollisionAreThoseOfItsTime) {
-  const PointSummary summary = RunPoint(AskedAt(0.6, 0.05, 10'000, Model::kBilliard));
+  const PointSummary summary =
+      RunPoint("lyapunov rho=0.6 delta=0.05 collisions=10000 model=billiard");
   const double time = ValueOf("mean_free_time_ball_piston", summary);
   for (const std::string name : {"lyapunov_1", "lyapunov_2"}) {
     EXPECT_NEAR(ValueOf(name + "_per_collision", summary), time * ValueOf(name, summary),
@@ -62,8 +60,9 @@ TEST(Lyapunov, ExponentsOfACollisionAreThoseOfItsTime) {
 // value is 0, rounding is a bias that a scatter does not show, and the stated error is larger.
 TEST(PairTangents, ExponentsComeInPairs) {
   for (const double rho : {0.501, 0.53, 0.7}) {
-    const double delta = 0.9 * PairDeltaBound(rho);
-    const PointSummary summary = RunPoint(AskedAt(rho, delta, 3200, Model::kBilliardReference));
+    const PointSummary summary =
+        RunPoint(absl::StrCat("lyapunov collisions=3200 model=billiard_reference rho=", rho,
+                              " delta=", 0.9 * PairDeltaBound(rho)));
     const auto exponent = [&](int k) { return ValueOf(absl::StrCat("lyapunov_", k), summary); };
     EXPECT_GT(exponent(1), exponent(2));
     EXPECT_GT(exponent(2), 0.1);
@@ -79,28 +78,17 @@ TEST(PairTangents, ExponentsComeInPairs) {
 
 // ---- gas-lyapunov ----
 
-EnsembleSpec GasAskedAt(const GasShape& shape, double share, double temperature, int64_t replicas,
-                        Model model = Model::kBilliard) {
-  const double rho = 0.53;
-  return SpecOf(&kGasLyapunov,
-                {{kRho, rho},
-                 {kDelta, share * GasDeltaBound(rho)},
-                 {kCells, CodeOf(shape)},
-                 {kTemperature, temperature}},
-                {.samples = replicas}, model);
-}
-
 // False alarms: 6e-5 for each shape.
 TEST(GasLyapunov, TheExchangeRateIsTheCanonicalMean) {
-  for (const GasShape& shape :
-       {GasShape{1, 1, false}, GasShape{3, 1, false}, GasShape{2, 2, true}}) {
-    const PointSummary summary = RunPoint(GasAskedAt(shape, 0.95, 3, 100));
-    EXPECT_LT(std::fabs(*Named("exchange_rate", summary.estimates).ZScore()), 4) << Text(shape);
+  for (const char* cells : {"1", "3", "2x2"}) {
+    const PointSummary summary =
+        RunPoint(absl::StrCat("gas-lyapunov delta=0.19 temperature=3 samples=100 cells=", cells));
+    EXPECT_LT(std::fabs(*Named("exchange_rate", summary.estimates).ZScore()), 4) << cells;
   }
 }
 
 TEST(GasLyapunov, ExponentsAreInOrderAndTheirSumIsTheEntropy) {
-  const PointSummary summary = RunPoint(GasAskedAt({4, 1, false}, 0.5, 1, 60));
+  const PointSummary summary = RunPoint("gas-lyapunov cells=4 temperature=1 samples=60");
   double sum = ValueOf("lyapunov_1", summary);
   for (int k = 2; k <= 11; ++k) {
     const double exponent = ValueOf(absl::StrCat("lyapunov_", k), summary);
@@ -117,13 +105,10 @@ TEST(GasLyapunov, ExponentsAreInOrderAndTheirSumIsTheEntropy) {
 // ball adds about ln(time between exchanges) + 0.5. A tenth of the slow part is left for the
 // constant, which is not known better. False alarms: 6e-5.
 TEST(GasLyapunov, TheEntropyIsThatOfTheCellsWhereExchangesAreRare) {
-  constexpr double kDeltaHere = 0.04, kTemperatureHere = 2;
-  const PointSummary of_pair = RunPoint(SpecOf(&kLyapunov, {{kRho, 0.53}, {kDelta, kDeltaHere}},
-                                               {.collisions = 20'000}, Model::kBilliard));
+  constexpr double kTemperatureHere = 2;
+  const PointSummary of_pair = RunPoint("lyapunov delta=0.04 collisions=20000 model=billiard");
   const double of_cell = ValueOf("lyapunov_1", of_pair) * 4 / std::numbers::pi;
-  EnsembleSpec spec = GasAskedAt({2, 1, false}, 1, kTemperatureHere, 100);
-  spec.grid[kDelta] = {kDeltaHere};
-  const PointSummary gas = RunPoint(spec);
+  const PointSummary gas = RunPoint("gas-lyapunov delta=0.04 temperature=2 samples=100");
   const double rate = ValueOf("exchange_rate", gas);
   const double slow = 2 * rate * (0.5 - std::log(rate / std::sqrt(kTemperatureHere)));
   const Estimate& entropy = Named("entropy_per_ball", gas.estimates);
@@ -134,13 +119,13 @@ TEST(GasLyapunov, TheEntropyIsThatOfTheCellsWhereExchangesAreRare) {
 }
 
 TEST(GasLyapunov, TheExponentsThatRoundingChangesHaveNoErrors) {
-  const PointSummary three = RunPoint(GasAskedAt({3, 1, false}, 0.95, 1, 60));
+  const PointSummary three = RunPoint("gas-lyapunov delta=0.19 cells=3 samples=60");
   for (int k = 1; k <= 8; ++k) {
     const Estimate& exponent = Named(absl::StrCat("lyapunov_", k), three.estimates);
     EXPECT_EQ(exponent.standard_error.has_value(), k != 2 && k != 3) << k;
   }
   EXPECT_THAT(three.remarks, Contains(HasSubstr("lyapunov_2 to lyapunov_3 have no standard")));
-  const PointSummary two = RunPoint(GasAskedAt({2, 1, false}, 0.95, 1, 60));
+  const PointSummary two = RunPoint("gas-lyapunov delta=0.19 samples=60");
   EXPECT_TRUE(Named("lyapunov_2", two.estimates).standard_error.has_value());
   EXPECT_THAT(two.remarks, IsEmpty());
 }

@@ -5,7 +5,6 @@
 #include "tests/core/billiard/recorded_collisions.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
-#include "tools/flows/numbered_orbits.h"
 
 namespace ballpiston {
 namespace {
@@ -79,19 +78,6 @@ TEST(ReturnTimes, IntegralOfTheSurvivalIsTheMeanHitTime) {
 
 // ---- expected_returns.h ----
 
-struct CountedReturns : NumberedOrbits {
-  explicit CountedReturns(const ReturnStarts& from) : starts(from) {}
-  PairState Start(uint64_t orbit) override { return starts.Draw(orbit); }
-  AfterCollision Collide(uint64_t, const Collision& collision) override {
-    ball_wall.Add(static_cast<double>(collision.ball_wall_hits));
-    piston_wall.Add(static_cast<double>(collision.piston_wall_hits));
-    return AfterCollision::kEnd;
-  }
-
-  const ReturnStarts starts;
-  Moments ball_wall, piston_wall;
-};
-
 // Starts are from the invariant law, exponent 1. The predictions are exact means: 5 standard
 // errors, 6e-7 false alarms each.
 TEST(PredictedHits, MatchReturnsAtAnEnergy) {
@@ -99,13 +85,16 @@ TEST(PredictedHits, MatchReturnsAtAnEnergy) {
   for (const double epsilon : {0.05, 0.2, 0.35, 0.45}) {
     const PredictedHits predicted = HitsPerReturn(geometry, epsilon);
     EXPECT_EQ(predicted.Events(), 1 + predicted.ball_wall + predicted.piston_wall);
+    const ReturnStarts starts = {geometry, epsilon, 1, {.seed = 1, .stream = 2}};
     for (const Engine engine : kEngines) {
-      CountedReturns returns({geometry, epsilon, 1, {.seed = 1, .stream = 2}});
-      ASSERT_TRUE(returns.Run(engine, geometry, 20'000));
-      EXPECT_NEAR(returns.ball_wall.mean, predicted.ball_wall,
-                  5 * *returns.ball_wall.StandardError());
-      EXPECT_NEAR(returns.piston_wall.mean, predicted.piston_wall,
-                  5 * *returns.piston_wall.StandardError());
+      Moments ball_wall, piston_wall;
+      for (const auto& collisions : Recorded(
+               engine, geometry, 20'000, {.start = [&](uint64_t i) { return starts.Draw(i); }})) {
+        ball_wall.Add(static_cast<double>(collisions.at(0).ball_wall_hits));
+        piston_wall.Add(static_cast<double>(collisions.at(0).piston_wall_hits));
+      }
+      EXPECT_NEAR(ball_wall.mean, predicted.ball_wall, 5 * *ball_wall.StandardError());
+      EXPECT_NEAR(piston_wall.mean, predicted.piston_wall, 5 * *piston_wall.StandardError());
     }
   }
 }

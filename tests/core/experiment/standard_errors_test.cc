@@ -2,17 +2,14 @@
 #include "core/closed_form/ingoing_law.h"
 #include "core/experiment/expected_returns.h"
 #include "core/experiment/returns.h"
-#include "tests/core/asked.h"
 #include "tests/core/preamble.h"
 #include "tests/core/run_point.h"
 
 namespace ballpiston {
 namespace {
 
-PointSummary Answered(const std::string& question) { return RunPoint(Asked(question)); }
-
 bool HasError(const std::string& estimate, const std::string& question) {
-  return Named(estimate, Answered(question).estimates).standard_error.has_value();
+  return Named(estimate, RunPoint(question).estimates).standard_error.has_value();
 }
 
 // Whether an estimate has an error depends on the number of samples, and a remark says how many are
@@ -70,7 +67,7 @@ TEST(StandardErrors, NeedANumberOfSamples) {
            {"first-hit delta=0.05 model=billiard samples=10 epsilon=0", "mean_hit_time", false},
        }) {
     SCOPED_TRACE(row.question);
-    const PointSummary summary = Answered(row.question);
+    const PointSummary summary = RunPoint(row.question);
     EXPECT_EQ(Named(row.estimate, summary.estimates).standard_error.has_value(), row.has_error);
     if (*row.remark == 0) continue;
     EXPECT_THAT(summary.remarks, Contains(HasSubstr(row.remark)));
@@ -91,7 +88,7 @@ TEST(StandardErrors, OfMeanSigmaDoesNotDependOnTheSample) {
   }
   const Estimate constant = Named(
       "mean_sigma",
-      Answered("first-hit delta=0.2 epsilon=0.3 exponent=0 samples=64 model=billiard").estimates);
+      RunPoint("first-hit delta=0.2 epsilon=0.3 exponent=0 samples=64 model=billiard").estimates);
   EXPECT_EQ(constant.value, -1);
   EXPECT_EQ(constant.standard_error, 0);
   EXPECT_EQ(constant.batches, 0u);
@@ -101,7 +98,7 @@ TEST(StandardErrors, OfMeanSigmaDoesNotDependOnTheSample) {
 TEST(StandardErrors, OfReturnsToASlowPistonNeedLongReturns) {
   const std::string question =
       "first-hit rho=0.7 delta=0.0101 epsilon=1e-5 model=billiard samples=500 exponent=";
-  const PointSummary summary = Answered(question + "1000");
+  const PointSummary summary = RunPoint(question + "1000");
   for (const Estimate& estimate : summary.estimates) {
     EXPECT_EQ(estimate.standard_error.has_value(), estimate.name == "kl_divergence");
   }
@@ -119,7 +116,7 @@ TEST(StandardErrors, ShareThatMeetsIsAboutTheMeasuredOne) {
   for (const auto& [delta, epsilon] :
        {std::pair(0.1, 0.0), {0.1, 1e-6}, {0.1, 0.4999}, {0.2, 0.5}}) {
     const NamedHistogram end =
-        Answered(absl::StrCat("energy-relaxation model=billiard samples=10000 delta=", delta,
+        RunPoint(absl::StrCat("energy-relaxation model=billiard samples=10000 delta=", delta,
                               " epsilon=", epsilon))
             .histograms.back();
     const auto bin = static_cast<size_t>(epsilon / end.histogram.upper *
@@ -139,12 +136,12 @@ TEST(StandardErrors, OfARelaxationsCurveAreAtMostTwiceTooSmall) {
   for (const char* epsilon : {"0.499", "0.49999"}) {
     const std::string question =
         absl::StrCat("energy-relaxation rho=0.7 delta=0.01 model=billiard epsilon=", epsilon);
-    const Curve truth = Answered(question + " samples=10000 seed=1000").curves[0];
+    const Curve truth = RunPoint(question + " samples=10000 seed=1000").curves[0];
     for (const int samples : {64, 200}) {
       std::vector<double> squares(truth.points.size()), errors(truth.points.size());
       for (int seed = 0; seed < 20; ++seed) {
         const Curve curve =
-            Answered(absl::StrCat(question, " samples=", samples, " seed=", seed)).curves[0];
+            RunPoint(absl::StrCat(question, " samples=", samples, " seed=", seed)).curves[0];
         for (size_t i = 1; i < curve.points.size(); ++i) {
           const CurvePoint& point = curve.points[i];
           if (!point.standard_error) continue;

@@ -22,17 +22,6 @@ TEST(PairGeometry, DerivedLengthsMatchTheCell) {
   }
 }
 
-// At the paper's radius the gas bound is 1/5 by construction, rho having 15 digits there.
-TEST(PairGeometry, GasBoundIsTheTighterOne) {
-  for (const double rho : kRadii) {
-    EXPECT_LT(GasDeltaBound(rho), PairDeltaBound(rho)) << rho;
-    EXPECT_GT(GasDeltaBound(rho), 0) << rho;
-  }
-  EXPECT_NEAR(GasDeltaBound(kPaperRho), 0.2, 1e-14);
-  EXPECT_LE(0.2, GasDeltaBound(kPaperRho) * (1 + kDeltaSlack));
-  EXPECT_NEAR(PairDeltaBound(kPaperRho), 0.32554373534619712, 1e-15);
-}
-
 // A value that a user has rounded up counts as the bound.
 TEST(PairGeometry, DeltaUpToTheBoundIsAccepted) {
   EXPECT_OK(PairGeometry::Create(0.6, std::numeric_limits<double>::denorm_min()));

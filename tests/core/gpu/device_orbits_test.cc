@@ -11,23 +11,16 @@
 namespace ballpiston {
 namespace {
 
-// Orbits from equilibrium, and every eighth from a ball at rest within the piston's reach. Without
-// a device the lanes of the processor compute them.
-class OrbitsOf : public RecordedCollisions {
- public:
-  OrbitsOf(const PairGeometry& geometry, uint64_t orbits, size_t collisions, OrbitDevice* device)
-      : RecordedCollisions(geometry, orbits, collisions), geometry_(geometry), device_(device) {}
-  PairState Start(uint64_t orbit) override {
-    if (orbit % 8 != 0) return RecordedCollisions::Start(orbit);
-    const double x = geometry_.piston_left() + 0.3 * geometry_.delta();
+// Orbits of equilibrium, and every eighth from a ball at rest within the piston's reach. Without a
+// device the lanes of the processor compute them.
+OrbitOptions OrbitsOf(const PairGeometry& geometry, OrbitDevice* device) {
+  const auto start = [geometry](uint64_t orbit) -> PairState {
+    if (orbit % 8 != 0) return StartInEquilibrium(geometry, orbit);
+    const double x = geometry.piston_left() + 0.3 * geometry.delta();
     return {.position = {x, 0}, .piston = 0.5, .piston_velocity = orbit % 16 == 0 ? 1.0 : -1.0};
-  }
-  OrbitDevice* Device() const override { return device_; }
-
- private:
-  const PairGeometry geometry_;
-  OrbitDevice* device_;
-};
+  };
+  return {.collisions = 4, .start = start, .device = device};
+}
 
 struct DeviceRun {
   PairGeometry geometry = kPaperPair;
@@ -38,21 +31,20 @@ struct DeviceRun {
 };
 
 void ExpectBitsOfTheLanes(const DeviceRun& run) {
-  constexpr size_t kCollisions = 4;
   std::vector<std::string> failures;
   OrbitsOnDevice device(
       std::make_unique<HostDevice>(run.lanes, run.faults), 1,
       [&](const absl::Status& status) { failures.emplace_back(status.message()); });
-  OrbitsOf found(run.geometry, run.orbits, kCollisions, &device);
-  EXPECT_TRUE(found.Run(Engine::kLanes, run.geometry, run.orbits));
+  const auto found =
+      Recorded(Engine::kLanes, run.geometry, run.orbits, OrbitsOf(run.geometry, &device));
   EXPECT_EQ(failures, run.failures);
   ForEachFusedTarget([&] {
-    OrbitsOf lanes(run.geometry, run.orbits, kCollisions, nullptr);
-    EXPECT_TRUE(lanes.Run(Engine::kLanes, run.geometry, run.orbits));
+    const auto lanes =
+        Recorded(Engine::kLanes, run.geometry, run.orbits, OrbitsOf(run.geometry, nullptr));
     for (uint64_t orbit = 0; orbit < run.orbits; ++orbit) {
-      ASSERT_EQ(found.by_orbit()[orbit].size(), lanes.by_orbit()[orbit].size());
-      for (size_t i = 0; i < lanes.by_orbit()[orbit].size(); ++i) {
-        ExpectSameBits(lanes.by_orbit()[orbit][i], found.by_orbit()[orbit][i]);
+      ASSERT_EQ(found[orbit].size(), lanes[orbit].size());
+      for (size_t i = 0; i < lanes[orbit].size(); ++i) {
+        ExpectSameBits(lanes[orbit][i], found[orbit][i]);
       }
     }
   });
@@ -79,13 +71,10 @@ TEST(OrbitsOnDevice, GoOnInTheLanesWhenTheDeviceFails) {
 }
 
 TEST(OrbitsOnDevice, PauseEndsARun) {
-  class Pauses : public OrbitsOf {
-   public:
-    using OrbitsOf::OrbitsOf;
-    bool Pause() override { return true; }
-  };
   OrbitsOnDevice device(std::make_unique<HostDevice>(64), 1, [](const absl::Status&) {});
-  EXPECT_FALSE(Pauses(kPaperPair, 300, 4, &device).Run(Engine::kLanes, kPaperPair, 300));
+  OrbitOptions options = OrbitsOf(kPaperPair, &device);
+  options.pause = [] { return true; };
+  EXPECT_FALSE(RecordedCollisions(kPaperPair, 300, options).RunBy(Engine::kLanes));
 }
 
 TEST(OrbitsOnDevice, AFailureIsReportedOnceAndNoLaterRunUsesTheDevice) {
@@ -93,8 +82,7 @@ TEST(OrbitsOnDevice, AFailureIsReportedOnceAndNoLaterRunUsesTheDevice) {
   OrbitsOnDevice device(std::make_unique<HostDevice>(64, HostFaults{.land = 0}), 1,
                         [&](const absl::Status&) { ++failures; });
   for (int run = 0; run < 3; ++run) {
-    OrbitsOf source(kPaperPair, 100, 2, &device);
-    EXPECT_TRUE(source.Run(Engine::kLanes, kPaperPair, 100));
+    Recorded(Engine::kLanes, kPaperPair, 100, OrbitsOf(kPaperPair, &device));
     EXPECT_TRUE(device.has_failed());
   }
   EXPECT_EQ(failures, 1);
