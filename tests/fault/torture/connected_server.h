@@ -4,7 +4,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include "client/library/client.h"
-#include "tests/server/own_channel.h"
+#include "tests/server/calls.h"
 #include "tests/support/preamble.h"
 #include "tests/support/server_process.h"
 
