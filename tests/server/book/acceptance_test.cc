@@ -164,7 +164,11 @@ TEST(Question, TextsWithTheSameMeaningGiveTheSameQuestion) {
 TEST_F(AcceptanceTest, ARequestIdIsForOneRequestOfItsPrincipal) {
   const auto reused = IsError(absl::StatusCode::kInvalidArgument, "REQUEST_ID_REUSED");
   const std::string made = Id(kAnn, CreateRequest(Question(kHeldSeed), kUuid));
-  EXPECT_THAT(Create(kAnn, CreateRequest(Question(), kUuid)), reused);
+  std::vector<v1::CreateEnsembleJobRequest> others(3, CreateRequest(Question(kHeldSeed), kUuid));
+  others[0].mutable_spec()->set_seed(2);
+  others[1].set_fresh(true);
+  others[2].set_priority(1);
+  for (const auto& other : others) EXPECT_THAT(Create(kAnn, other), reused);
   EXPECT_THAT(book_->Cancel(kAnn, made, kUuid), reused);
   const std::string cancelled = Id(kAnn, FreshRequest(Question(kHeldSeed)));
   for (int replay = 0; replay < 2; ++replay) EXPECT_OK(book_->Cancel(kAnn, cancelled, kOtherUuid));

@@ -61,14 +61,15 @@ class JobList : public BookTest {
 TEST_F(JobList, AJobMatchesAllPartsOfTheFilter) {
   const absl::Time noon = absl::FromUnixSeconds(43'200);
   const absl::Time before = noon - absl::Nanoseconds(1);
-  Insert({{"match", EnsembleJob::FAILED, noon, SmallFirstHit()},
+  Insert({{"match", EnsembleJob::FAILED, noon + absl::Hours(1), SmallFirstHit()},
           {"early", EnsembleJob::FAILED, before, SmallFirstHit()},  // the clock was set back
+          {"later", EnsembleJob::FAILED, noon, SmallFirstHit()},
           {"experiment", EnsembleJob::FAILED, noon, Equilibrium(1, 2)},
           {"state", EnsembleJob::CANCELLED, noon, SmallFirstHit()}});
   const JobsQuery query = Query({.states = {EnsembleJob::FAILED, EnsembleJob::SUCCEEDED},
                                  .experiments = {v1::EnsembleSpec::FIRST_HIT},
                                  .since = noon});
-  EXPECT_THAT(IdsOf(List(query)), ElementsAre("match"));
+  EXPECT_THAT(IdsOf(List(query)), ElementsAre("later", "match"));
   EXPECT_EQ(List(query).next_before, std::nullopt);
   EXPECT_THAT(IdsOf(List(query, kBen)), IsEmpty());
 }

@@ -76,6 +76,7 @@ TEST_F(JobInStore, AJobWhoseEndTheStoreRejectsFails) {
   EXPECT_THAT(job.error().message(), HasSubstr("not this one"));
   EXPECT_EQ(job.progress().points_done(), 3);
   AwaitThat([this] { return book_->ended_jobs().at(EnsembleJob::FAILED) == 1; });
+  EXPECT_EQ(book_->ended_jobs().at(EnsembleJob::SUCCEEDED), 0);
 }
 
 // A row has the number as a double, which damage may have changed to anything.

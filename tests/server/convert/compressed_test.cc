@@ -47,6 +47,11 @@ TEST(Compressed, BytesAfterAStreamRemain) {
   EXPECT_EQ(rest, "x");
 }
 
+TEST(Compressed, AFileOfAnotherFormatIsDataLoss) {
+  EXPECT_THAT(ContentsOf("#!/bin/bash\necho this is a script of some length\n"),
+              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("not a file of ballpiston")));
+}
+
 TEST(Compressed, AStreamOfTooManyBytesIsDataLoss) {
   EXPECT_THAT(ContentsOf(Compressed(std::string(kMost, 'a'))),
               IsOkAndHolds(testing::SizeIs(kMost)));

@@ -6,6 +6,7 @@ namespace ballpiston::server {
 namespace {
 
 TEST(Errors, HaveTheLastArgumentInTheMetadata) {
+  EXPECT_THAT(std::string(JobNotFound("ensembleJobs/x").message()), HasSubstr("ensembleJobs/x"));
   EXPECT_THAT(MetadataOf(JobNotFound("ensembleJobs/x")),
               ElementsAre(Pair("name", "ensembleJobs/x")));
   const grpc::Status status = GrpcStatus(JobAlreadyEnded("ensembleJobs/$1", "FAILED"));

@@ -87,8 +87,7 @@ TEST(PointResult, EveryParameterHasAFieldAndComesBack) {
             "rho: 0.6 delta: 0.1");
 }
 
-// Expected probabilities depend only on the parameters, and are not stored. tests/questions checks
-// that their sum is 1.
+// Expected probabilities depend only on the parameters, and are not stored.
 TEST(PointResult, ExpectedProbabilitiesAreComputedWhenRead) {
   const auto experiment = PointExperiment::Create(SpecOf(&kFirstHit, PaperPoint(0.1, 0.25, 1)), 0);
   BlockResult merged = experiment->EmptyResult();
@@ -96,9 +95,12 @@ TEST(PointResult, ExpectedProbabilitiesAreComputedWhenRead) {
   const v1::PointResult details = DetailsOf(experiment->Summarize(merged));
   EXPECT_EQ(details.histograms(0).expected_probabilities_size(), 0);
   const v1::PointResult result = PointResultOf(0, *experiment, merged, kFirstHit);
+  double sum = 0;
   for (const v1::Histogram& histogram : result.histograms()) {
     EXPECT_EQ(histogram.expected_probabilities_size(), histogram.counts_size());
+    for (const double probability : histogram.expected_probabilities()) sum += probability;
   }
+  EXPECT_NEAR(sum, 1, 1e-12);  // rounding of a thousand summands
   EXPECT_EQ(result.histograms(0).counts(17), 3);
 }
 

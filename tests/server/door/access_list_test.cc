@@ -57,6 +57,7 @@ TEST(AccessList, ErrorsNameTheLineAndDoNotQuoteIt) {
   const std::string good = HashText("one");
   const std::pair<std::string, std::string> cases[] = {
       {secret, "the line of a token"},
+      {"token " + secret, "the line of a token"},
       {"token " + secret + " alice read", "sha256: and 64 hexadecimal digits"},
       {"token " + good + "0 alice read", "64 hexadecimal digits"},
       {"token " + good.substr(0, 70) + "g alice read", "64 hexadecimal digits"},
@@ -65,6 +66,7 @@ TEST(AccessList, ErrorsNameTheLineAndDoNotQuoteIt) {
       {"token " + good + " local read", "not local"},
       {"token " + good + " " + std::string(65, 'a') + " read", "1 to 64"},
       {"token " + good + " alice " + secret, "read, submit, admin"},
+      {"token " + good + " alice READ", "read, submit, admin"},
       {"token " + good + " alice read " + secret, "permitted: 2027-01-31T"},
       {"token " + good + " alice read infinite-future", "2027-01-31"},
       {"token " + good + " alice read 2030-13-01", "2027-01-31"},

@@ -81,6 +81,12 @@ TEST(Loopback, WithoutAnOwnTokenTheServerWarnsAndServes) {
   EXPECT_OK(door->authenticator().Authenticate({std::string("Bearer ") + kAlice}, absl::Now()));
 }
 
+// The other descriptions are tested above and below.
+TEST(DoorDescription, NamesAUnixSocket) {
+  EXPECT_EQ(Door::Create({}, *ParseListenAddress("unix:/tmp/x")).value()->Description(),
+            "a Unix socket for this server's user, without tokens");
+}
+
 class SecureServer : public ::testing::Test {
  protected:
   TestClient NewAlice() { return TestClient(server_.NewChannel(files_.Credentials(kAlice))); }

@@ -70,6 +70,12 @@ TEST_F(NewToken, OnAFullDiskTheFileStaysUnchanged) {
   Issue("bob:submit");
 }
 
+TEST_F(NewToken, WithoutItsFolderNoFileIsMade) {
+  const NamedFile nowhere{"access-file", folder_.File("no/such/list")};
+  EXPECT_THAT(IssueToken(nowhere, *ParseTokenRequest("alice:read"), kIssueTime),
+              StatusIs(absl::StatusCode::kPermissionDenied));
+}
+
 TEST_F(NewToken, MalformedRequestsAreRefused) {
   for (const char* text :
        {"", "alice", "alice:", ":read", "alice:root", "alice:read:", "a b:read", "alice:read:0",

@@ -50,10 +50,11 @@ TEST(EnsembleService, PagesOfLargeJobsStayBelowTwoMebibytes) {
 TEST(EnsembleService, SizeAndViewMayChangeFromPageToPage) {
   RunningServer server;
   for (int i = 0; i < 3; ++i) server.Submit(Equilibrium(1, 2));
+  server.Submit(SmallFirstHit());  // does not match
   auto request =
       FromText<v1::ListEnsembleJobsRequest>("experiments: EQUILIBRIUM since {} page_size: 1");
   request.set_page_token(server.List(request).next_page_token());
-  request.set_page_size(2);
+  request.set_page_size(3);
   request.set_view(v1::ListEnsembleJobsRequest::BASIC);
   EXPECT_EQ(server.List(request).jobs_size(), 2);
 }
@@ -71,7 +72,7 @@ TEST(EnsembleService, AnUnfinishedPointIsReadOnRequestOnly) {
   EXPECT_EQ(server.Answered<v1::PointResult>(request).samples(), 3 * kFakeSamplesPerBlock);
 }
 
-TEST(EnsembleService, PagesOfHistogramsStayBelowTwoMebibytes) {
+TEST(EnsembleService, TheBasicViewHasNoHistogramsAndPagesOfThemStayBelowTwoMebibytes) {
   RunningServer server({.factory = nullptr});  // the core's experiments
   v1::EnsembleSpec spec = SmallFirstHit();
   spec.mutable_grid()->clear_delta();
@@ -88,6 +89,12 @@ TEST(EnsembleService, PagesOfHistogramsStayBelowTwoMebibytes) {
   }
   EXPECT_EQ(points, 100);
   EXPECT_GT(pages.size(), 1u);
+  request.set_view(v1::ListResultsRequest::BASIC);
+  const auto basic = server.Answered<v1::ListResultsResponse>(request);
+  ASSERT_EQ(basic.results_size(), 100);
+  EXPECT_THAT(basic.results(0).histograms(), IsEmpty());
+  EXPECT_THAT(basic.results(0).estimates(), Not(IsEmpty()));
+  EXPECT_EQ(basic.results(0).model(), v1::EnsembleSpec::BILLIARD);
 }
 
 }  // namespace

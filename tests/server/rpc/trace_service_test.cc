@@ -25,7 +25,7 @@ class TraceServiceTest : public testing::Test {
 // A free time is the time since the last event of the same kind: a pair has one ball and one
 // piston.
 TEST_F(TraceServiceTest, TheStartComesFirstThenAsManyEventsAsAsked) {
-  for (const int64_t events : {1, kEventsOfMessage, kEventsOfMessage + 1}) {
+  for (const int64_t events : {1, kEventsOfMessage, kEventsOfMessage + 1, 1000}) {
     const auto messages = TraceStream(server_, TraceRequest(events)).ToTheEnd();
     ASSERT_GE(messages.size(), 2u);
     const v1::TraceStart& start = messages[0].start();
@@ -34,11 +34,14 @@ TEST_F(TraceServiceTest, TheStartComesFirstThenAsManyEventsAsAsked) {
     EXPECT_FALSE(start.has_cells() || start.has_temperature());
     EXPECT_EQ(messages[0].events_size(), 0);
     int64_t told = 0;
+    double time = 0;
     std::map<int, double> last;  // by kind
     for (const auto& message : messages) {
       told += message.events_size();
       EXPECT_LE(message.events_size(), kEventsOfMessage);
       for (const v1::TraceEvent& event : message.events()) {
+        EXPECT_GE(event.time(), time);
+        time = event.time();
         const auto [before, is_first] = last.try_emplace(event.event(), event.time());
         EXPECT_EQ(event.has_free_time(), !is_first);
         EXPECT_NEAR(event.free_time(), event.time() - before->second, 1e-9);

@@ -92,14 +92,18 @@ TEST_F(WatchTest, TheJobHasNoGridAndAtItsEndATimeOfExpiry) {
   RunningServer server({.factory = GatedExperiments(gate_), .limits = {.retain_days = 3}});
   WatchStream stream(server, server.Submit(Equilibrium(3, 1)));
   const EnsembleJob first = stream.Next().value().job();
+  EXPECT_FALSE(first.has_expire_time());
   gate_.Open();
   const EnsembleJob last = stream.ToTheEnd().back().job();
-  for (const EnsembleJob& job : {first, last}) {
+  const EnsembleJob later = WatchStream(server, last.name()).ToTheEnd().back().job();
+  for (const EnsembleJob& job : {first, last, later}) {
     EXPECT_FALSE(job.spec().has_grid());
     EXPECT_EQ(job.spec().experiment(), v1::EnsembleSpec::EQUILIBRIUM);
     EXPECT_EQ(job.progress().points(), 3);
   }
-  EXPECT_EQ(last.expire_time().seconds() - last.end_time().seconds(), 3 * 86400);
+  for (const EnsembleJob& job : {last, later}) {
+    EXPECT_EQ(job.expire_time().seconds() - job.end_time().seconds(), 3 * 86400);
+  }
 }
 
 // ---- a watch or a trace ends when the credentials of its call become invalid ----
@@ -140,7 +144,7 @@ TEST_F(WatchCredentialsTest, AWatchEndsWhenItsTokenIsNoLongerValid) {
     ReplaceAccess(LaboratoryTokens());
     TestClient client = ClientWith(token);
     WatchStream watch(client, job);
-    ASSERT_TRUE(watch.Next());
+    for (int beats = 0; beats < 3;) beats += watch.Next().value().has_heartbeat();  // valid so far
     ReplaceAccess(access_file);
     EXPECT_EQ(ReasonOf(watch.End()), reason) << access_file;
   }
