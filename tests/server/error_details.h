@@ -1,4 +1,5 @@
-// The details of an error beside its code and message.
+// The details of an error beside its code and message. An error is an absl::Status, an
+// absl::StatusOr or a grpc::Status.
 //
 //   EXPECT_THAT(server.Delete(name), IsError(grpc::StatusCode::NOT_FOUND, "JOB_NOT_FOUND"));
 #pragma once
@@ -10,44 +11,39 @@
 
 namespace ballpiston::server {
 
-struct ErrorDetails {
-  std::string reason;  // this and the next two are from google.rpc.ErrorInfo
-  std::string domain;
-  std::map<std::string, std::string> metadata;
-  std::vector<std::string> fields;  // the fields of the violations in google.rpc.BadRequest
-  int64_t retry_seconds = 0;        // from google.rpc.RetryInfo
-};
-
-inline ErrorDetails DetailsOf(const grpc::Status& status) {
-  ErrorDetails details;
-  google::rpc::Status rpc;
-  rpc.ParseFromString(status.error_details());
-  for (const auto& any : rpc.details()) {
-    google::rpc::ErrorInfo info;
-    google::rpc::BadRequest request;
-    google::rpc::RetryInfo retry;
-    if (any.UnpackTo(&info)) {
-      details.reason = info.reason();
-      details.domain = info.domain();
-      details.metadata.insert(info.metadata().begin(), info.metadata().end());
-    }
-    if (any.UnpackTo(&retry)) details.retry_seconds = retry.retry_delay().seconds();
-    if (!any.UnpackTo(&request)) continue;
-    for (const auto& violation : request.field_violations()) {
-      details.fields.push_back(violation.field());
-    }
+// Empty if the error does not have this detail.
+template <typename Detail, typename Result>
+Detail DetailOf(const Result& result) {
+  google::rpc::Status error;
+  if constexpr (requires { result.error_details(); }) {
+    error.ParseFromString(result.error_details());
+  } else {
+    error = RpcStatus(StatusOf(result));
   }
-  return details;
+  Detail detail;
+  for (const auto& any : error.details()) {
+    if (any.UnpackTo(&detail)) break;
+  }
+  return detail;
 }
-inline ErrorDetails DetailsOf(const absl::Status& status) { return DetailsOf(GrpcStatus(status)); }
 
 template <typename Result>
 std::string ReasonOf(const Result& result) {
-  if constexpr (requires { result.error_code(); }) {
-    return DetailsOf(result).reason;
-  } else {
-    return DetailsOf(StatusOf(result)).reason;
-  }
+  return DetailOf<google::rpc::ErrorInfo>(result).reason();
+}
+
+template <typename Result>
+auto MetadataOf(const Result& result) {
+  return DetailOf<google::rpc::ErrorInfo>(result).metadata();
+}
+
+// The fields that a request gives wrongly.
+template <typename Result>
+std::vector<std::string> FieldsOf(const Result& result) {
+  std::vector<std::string> fields;
+  const auto request = DetailOf<google::rpc::BadRequest>(result);
+  for (const auto& violation : request.field_violations()) fields.push_back(violation.field());
+  return fields;
 }
 
 MATCHER_P2(IsError, code, reason, "") {

@@ -49,4 +49,19 @@ inline v1::CreateEnsembleJobRequest FreshRequest(const v1::EnsembleSpec& spec,
   return request;
 }
 
+// A request that has only the name of a job.
+template <typename Request>
+Request RequestNaming(const std::string& name) {
+  Request request;
+  request.set_name(name);
+  return request;
+}
+
+inline v1::WatchEnsembleJobRequest WatchRequest(const std::string& name,
+                                                const std::string& resume_token) {
+  auto request = RequestNaming<v1::WatchEnsembleJobRequest>(name);
+  request.set_resume_token(resume_token);
+  return request;
+}
+
 }  // namespace ballpiston::server

@@ -1,4 +1,4 @@
-// A whole server in the test's process, and clients of it. Fake experiments, requests and matchers
+// A whole server in the test's process, and a client of it. Fake experiments, requests and matchers
 // of errors come with it.
 //
 //   RunningServer server;  // fake experiments, a Unix socket in a temporary folder
@@ -8,14 +8,10 @@
 //   RunningServer small({.workers = 1, .limits = {.max_streams = 1}});
 #pragma once
 
-#include "ballpiston/v1/ensemble.pb.h"
-#include "ballpiston/v1/server.pb.h"
 #include "server/ballpiston_server.h"
+#include "tests/server/calls.h"
 #include "tests/server/error_details.h"
-#include "tests/server/factory_opener.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/server/own_channel.h"
-#include "tests/server/requests.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::server {
@@ -35,80 +31,25 @@ struct TestServerOptions {
   std::shared_ptr<grpc::ChannelCredentials> credentials = nullptr;  // the client's; null: none
 };
 
-// A channel, and frequent calls on it. Calls that do not return a status expect OK.
-class TestClient {
+class RunningServer : public TestClient {
  public:
-  explicit TestClient(std::shared_ptr<grpc::Channel> channel) : channel_(std::move(channel)) {}
-
-  const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
-
-  // A call with one answer. The type of the request decides its method.
-  grpc::Status Call(const google::protobuf::Message& request,
-                    google::protobuf::Message* answer = nullptr) const;
-  template <typename Answer>
-  Answer Answered(const google::protobuf::Message& request) const {
-    Answer answer;
-    EXPECT_OK(Call(request, &answer));
-    return answer;
-  }
-
-  v1::EnsembleJob Created(const v1::CreateEnsembleJobRequest& request) const {
-    return Answered<v1::EnsembleJob>(request);
-  }
-  std::string Submit(const v1::EnsembleSpec& spec) const {  // creates a new job; its name
-    return Created(FreshRequest(spec)).name();
-  }
-  std::string Succeeded(const v1::EnsembleSpec& spec) const;  // the same, and waits for success
-  v1::EnsembleJob Get(const std::string& name) const;
-  grpc::Status Cancel(const std::string& name, const std::string& request_id = "") const;
-  grpc::Status Delete(const std::string& name) const;
-  v1::EnsembleJob AwaitEnd(const std::string& name) const;  // by watching it
-  v1::ServerStatus Status() const {
-    return Answered<v1::ServerStatus>(v1::GetServerStatusRequest());
-  }
-
-  v1::ListEnsembleJobsResponse List(const v1::ListEnsembleJobsRequest& request = {}) const {
-    return Answered<v1::ListEnsembleJobsResponse>(request);
-  }
-  // All pages, beginning with the page of `request`.
-  template <typename Page, typename Request>
-  std::vector<Page> Pages(Request request) const {
-    std::vector<Page> pages;
-    do {
-      pages.push_back(Answered<Page>(request));
-      request.set_page_token(pages.back().next_page_token());
-    } while (!request.page_token().empty());
-    return pages;
-  }
-  // All results of a job, each serialized, without its name, which has the job's id.
-  std::vector<std::string> ResultBytes(const std::string& name) const;
-
- private:
-  std::shared_ptr<grpc::Channel> channel_;
-};
-
-// Throws, after a failed expectation, if the server does not start.
-struct StartedServer {
-  explicit StartedServer(const TestServerOptions& options);
-
-  const TemporaryFolder folder;  // has the data if the options name no data folder
-  std::unique_ptr<BallpistonServer> process;
-};
-
-class RunningServer : private StartedServer, public TestClient {
- public:
+  // Throws, after a failed expectation, if the server does not start.
   explicit RunningServer(const TestServerOptions& options = {});
 
-  BallpistonServer& server() { return *process; }
-  std::string address() const { return process->address(); }
+  BallpistonServer& server() { return *process_; }
+  std::string address() const { return process_->address(); }
   // A channel with a connection of its own. Null: without credentials.
   std::shared_ptr<grpc::Channel> NewChannel(
       const std::shared_ptr<grpc::ChannelCredentials>& credentials = nullptr) const {
     return OwnChannel(address(), credentials);
   }
   void Shutdown(std::chrono::milliseconds drain = std::chrono::milliseconds(0)) {
-    process->Shutdown(drain);
+    process_->Shutdown(drain);
   }
+
+ private:
+  const TemporaryFolder folder_;  // has the data if the options name no data folder
+  std::unique_ptr<BallpistonServer> process_;
 };
 
 // The error of a server that does not start with these options. OK if it starts.

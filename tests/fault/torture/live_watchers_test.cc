@@ -1,10 +1,11 @@
 // The server stays healthy with a thousand watchers of one job, and stops in time.
 #include <list>
 
+#include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "client/library/job_watch.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/stalled_watches.h"
-#include "tests/server/call_by_name.h"
+#include "tests/server/calls.h"
 
 namespace ballpiston::torture {
 namespace {

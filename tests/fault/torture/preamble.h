@@ -9,7 +9,7 @@
 
 #include "client/library/client.h"
 #include "tests/fault/torture/findings.h"
-#include "tests/server/own_channel.h"
+#include "tests/server/calls.h"
 #include "tests/support/preamble.h"
 #include "tests/support/server_process.h"
 

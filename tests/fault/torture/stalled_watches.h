@@ -4,8 +4,7 @@
 
 #include <list>
 
-#include "tests/server/own_channel.h"
-#include "tests/server/rpc/message_stream.h"
+#include "tests/server/calls.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::torture {
@@ -17,12 +16,9 @@ class StalledWatches {
   StalledWatches(int count, const std::string& address, const std::string& job) {
     for (int i = 0; i < count; ++i) {
       server::WatchStream& watch = readers_.emplace_back(address, job).watch;
-      watch.reader->WaitForInitialMetadata();  // the first message is on its way
+      watch.AwaitAnswer();  // the first message is on its way
       if (i % 2 == 0 && !watch.Next()) throw std::runtime_error("cannot watch " + job);
     }
-  }
-  ~StalledWatches() {
-    for (Reader& reader : readers_) reader.watch.Leave();
   }
 
   // Reads again; call it once. Each watch reads until a message has at least `last` finished

@@ -160,33 +160,24 @@ TEST(Question, TextsWithTheSameMeaningGiveTheSameQuestion) {
 
 // ---- the same request ----
 
-TEST_F(AcceptanceTest, ARequestIdOfAnotherRequestIsRefused) {
-  const std::string first = Id(kAnn, CreateRequest(Question(), kUuid));
-  std::vector<v1::CreateEnsembleJobRequest> others(3, CreateRequest(Question(), kUuid));
+// The simulation tests that a retry returns the original job, also after a restart.
+TEST_F(AcceptanceTest, ARequestIdIsForOneRequestOfItsPrincipal) {
+  const auto reused = IsError(absl::StatusCode::kInvalidArgument, "REQUEST_ID_REUSED");
+  const std::string made = Id(kAnn, CreateRequest(Question(kHeldSeed), kUuid));
+  std::vector<v1::CreateEnsembleJobRequest> others(3, CreateRequest(Question(kHeldSeed), kUuid));
   others[0].mutable_spec()->set_seed(2);
   others[1].set_fresh(true);
   others[2].set_priority(1);
-  for (int restarted = 0; restarted < 2; ++restarted) {
-    for (const v1::CreateEnsembleJobRequest& other : others) {
-      EXPECT_THAT(Create(kAnn, other),
-                  IsError(absl::StatusCode::kInvalidArgument, "REQUEST_ID_REUSED"));
-    }
-    EXPECT_EQ(Id(kAnn, CreateRequest(Question(), kUuid)), first);
-    Start();
-  }
-  EXPECT_EQ(List(Query(), kRoot).jobs.size(), 1u);
-}
-
-TEST_F(AcceptanceTest, ARequestIdOfACancellationIsNotThatOfAnotherRequest) {
-  const std::string made = Id(kAnn, CreateRequest(Question(kHeldSeed), kUuid));
-  const std::string id = "123e4567-e89b-12d3-a456-426614174009";
-  const auto reused = IsError(absl::StatusCode::kInvalidArgument, "REQUEST_ID_REUSED");
+  for (const auto& other : others) EXPECT_THAT(Create(kAnn, other), reused);
   EXPECT_THAT(book_->Cancel(kAnn, made, kUuid), reused);
   const std::string cancelled = Id(kAnn, FreshRequest(Question(kHeldSeed)));
-  for (int replay = 0; replay < 2; ++replay) EXPECT_OK(book_->Cancel(kAnn, cancelled, id));
-  EXPECT_THAT(book_->Cancel(kAnn, made, id), reused);
-  EXPECT_THAT(Create(kAnn, CreateRequest(Question(), id)), reused);
+  for (int replay = 0; replay < 2; ++replay) EXPECT_OK(book_->Cancel(kAnn, cancelled, kOtherUuid));
+  EXPECT_THAT(book_->Cancel(kAnn, made, kOtherUuid), reused);
+  EXPECT_THAT(Create(kAnn, CreateRequest(Question(), kOtherUuid)), reused);
   EXPECT_EQ(Id(kAnn, CreateRequest(Question(kHeldSeed), kUuid)), made);
+  const std::string bens = Id(kBen, CreateRequest(Question(2), kUuid));
+  EXPECT_EQ(Id(kBen, CreateRequest(Question(2), kUuid)), bens);
+  EXPECT_THAT(book_->Get(kAnn, bens), StatusIs(absl::StatusCode::kNotFound));
 }
 
 TEST_F(AcceptanceTest, ARetryAndAnAnswerFromTheStoreAddLabelsToTheEarlierJob) {
@@ -225,30 +216,15 @@ TEST_F(AcceptanceTest, AStoredAnswerKeepsItsLabelsAndIsUsedOnlyIfTheyFit) {
   EXPECT_EQ(Id(kAnn, many), third);
 }
 
-TEST_F(AcceptanceTest, EachPrincipalHasItsOwnRequestIds) {
-  const std::string anns = Id(kAnn, CreateRequest(Question(), kUuid));
-  const std::string bens = Id(kBen, CreateRequest(Question(2), kUuid));
-  EXPECT_NE(anns, bens);
-  EXPECT_EQ(Id(kBen, CreateRequest(Question(2), kUuid)), bens);
-  EXPECT_THAT(book_->Get(kAnn, bens), StatusIs(absl::StatusCode::kNotFound));
-}
-
-// Otherwise the store would grow each time a question is asked again.
+// Otherwise the store would grow each time a question is asked again. Answers are only for their
+// engine.
 TEST_F(AcceptanceTest, OnlyTheRequestThatMadeTheJobIsStored) {
   const std::string id = Answered(kAnn, CreateRequest(Question(), kUuid));
-  for (int repeated = 0; repeated < 2; ++repeated) {
-    ASSERT_OK_AND_ASSIGN(const auto again, Create(kAnn, CreateRequest(Question(), kOtherUuid)));
-    EXPECT_EQ(again.name(), JobName(id));
-    EXPECT_TRUE(again.answered_from_store());
-  }
-  const auto column = [this](const std::string& name) {
-    return ReadFrom(*store_, [&](Database& database) {
-      return database.All<std::string>("SELECT " + name + " FROM jobs");
-    });
-  };
-  EXPECT_THAT(column("request_id"), ElementsAre(kUuid));
-  // Answers are only for their engine.
-  EXPECT_THAT(column("question"), ElementsAre(QuestionOf(Question(), EngineVersion())));
+  EXPECT_EQ(Id(kAnn, CreateRequest(Question(), kOtherUuid)), id);
+  ExpectComputed(kAnn, CreateRequest(Question(2), kOtherUuid), id);
+  const auto job =
+      ReadFrom(*store_, [&](Database& database) { return FindJob(database, id, Grid::kLeftOut); });
+  EXPECT_EQ(job->question, QuestionOf(Question(), EngineVersion()));
 }
 
 // ---- limits ----
@@ -256,38 +232,33 @@ TEST_F(AcceptanceTest, OnlyTheRequestThatMadeTheJobIsStored) {
 // Three jobs of ann, of one point each, wait at the gate. A rejected job does not count.
 TEST_F(AcceptanceTest, EachLimitNamesItsReasonAndItsFlag) {
   const std::string wait = ": wait until some jobs have ended, or cancel some of yours";
+  const std::string split = ": split it between several jobs";
   const struct {
     Limits limits;
     int points;  // of the rejected job
-    std::string reason, flag, advice;
+    std::string flag, reason, advice;
   } rows[] = {{{.max_active_jobs_per_principal = 3},
                1,
-               "TOO_MANY_JOBS",
                "max-active-jobs-per-principal",
+               "TOO_MANY_JOBS",
                wait},
               {{.max_active_points_per_principal = 3},
                1,
-               "TOO_MANY_ACTIVE_POINTS",
                "max-active-points-per-principal",
+               "TOO_MANY_ACTIVE_POINTS",
                wait},
-              {{.max_points_per_job = 3},
-               4,
-               "TOO_MANY_POINTS",
-               "max-points-per-job",
-               ": split it between several jobs"}};
+              {{.max_points_per_job = 3}, 4, "max-points-per-job", "TOO_MANY_POINTS", split}};
   for (const auto& row : rows) {
     Start(row.limits);
     std::vector<std::string> held;
     for (int i = 0; i < 3; ++i)
       held.push_back(Id(kAnn, FreshRequest(Equilibrium(1, 3, kHeldSeed))));
-    for (int repeated = 0; repeated < 2; ++repeated) {
-      const auto refused = Create(kAnn, FreshRequest(Equilibrium(row.points, 1), kUuid));
-      EXPECT_THAT(refused, IsError(absl::StatusCode::kResourceExhausted, row.reason));
-      EXPECT_THAT(refused, StatusIs(absl::StatusCode::kResourceExhausted,
-                                    AllOf(HasSubstr("--" + row.flag), HasSubstr(row.advice))));
-      EXPECT_THAT(DetailsOf(refused.status()).metadata,
-                  AllOf(Contains(Pair("flag", row.flag)), Contains(Pair("limit", "3"))));
-    }
+    const auto refused = Create(kAnn, FreshRequest(Equilibrium(row.points, 1), kUuid));
+    EXPECT_EQ(ReasonOf(refused), row.reason);
+    EXPECT_THAT(refused, StatusIs(absl::StatusCode::kResourceExhausted,
+                                  AllOf(HasSubstr("--" + row.flag), HasSubstr(row.advice))));
+    EXPECT_THAT(MetadataOf(refused),
+                UnorderedElementsAre(Pair("flag", row.flag), Pair("limit", "3")));
     for (const std::string& id : held) {
       ASSERT_OK(book_->Cancel(kAnn, id, ""));
       AwaitEnd(id);

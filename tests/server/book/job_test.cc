@@ -1,9 +1,6 @@
 #include "server/book/job.h"
 
-#include "server/book/job_book.h"
-#include "server/book/job_journal.h"
-#include "server/convert/point_result.h"
-#include "server/store/job_name.h"
+#include "tests/server/book/book_test.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
@@ -50,81 +47,48 @@ TEST(Job, AnOldSnapshotIsReplacedIfTheJobHasChanged) {
   EXPECT_EQ(made, 2);
 }
 
-class JobJournalTest : public testing::Test {
+// ---- the end of a job, and damage ----
+
+class JobInStore : public BookTest {
  protected:
-  // Nothing is committed before it is flushed.
-  void SetUp() override {
-    ASSERT_OK_AND_ASSIGN(store_, Store::Open(folder_.File("store"),
-                                             {.delay = kUnreachedLimit, .stall = kUnreachedLimit}));
-    record_ = JobWithPoints(3);
-    ASSERT_OK(store_->Commit([this](Database& database) { InsertJob(database, record_); }));
-    job_ = std::make_shared<Job>(record_);
-    journal_.emplace(job_, *store_, false, nullptr);
+  // A job of three points at its end. The store rejects the writes that fit `event`.
+  EnsembleJob EndedWithout(const std::string& event) {
+    EXPECT_OK(store_->Commit([&](Database& database) {
+      database.Execute("CREATE TRIGGER rejection BEFORE " + event +
+                       " BEGIN SELECT RAISE(ABORT, 'not this one'); END");
+    }));
+    const std::string id = Id(kAnn, CreateRequest(Equilibrium(3, 1)));
+    EXPECT_EQ(AwaitEnd(id), EnsembleJob::FAILED);
+    return Get(id);
   }
-
-  JobRecord Row() {
-    return *ReadFrom(*store_, [this](Database& database) {
-      return FindJob(database, record_.id, Grid::kIncluded);
-    });
-  }
-
-  void Finish(size_t point) {
-    const EnsembleSpec spec = FakeSpec(3, 1);
-    const auto experiment = FakeExperiments()(spec, point);
-    PointFold fold(*experiment);
-    fold.Resume({.chunk = 1, .complete = FakeMerged(spec, point, 1)});
-    journal_->PointFinished(point, *experiment, fold);
-  }
-
-  TemporaryFolder folder_;
-  std::unique_ptr<Store> store_;
-  JobRecord record_;
-  std::shared_ptr<Job> job_;
-  std::optional<JobJournal> journal_;
 };
 
-TEST_F(JobJournalTest, AJobWithMissingResultsFails) {
-  for (const size_t point : {0u, 2u}) Finish(point);
-  job_->Add({.points_computed = 2.25});
-  journal_->Ended(absl::OkStatus());
-  ASSERT_OK(store_->Flush());
-  const EnsembleJob job = Row().job;
-  EXPECT_EQ(job.state(), EnsembleJob::FAILED);
-  EXPECT_THAT(job.error().message(), testing::HasSubstr("of 3 computed points the store keeps 2"));
-  EXPECT_EQ(job.progress().fraction(), 2.25 / 3);  // as a watch has shown it before
+TEST_F(JobInStore, AJobWithMissingResultsFails) {
+  const EnsembleJob job = EndedWithout("INSERT ON results WHEN new.point = 1");
+  EXPECT_THAT(job.error().message(), HasSubstr("of 3 computed points the store keeps 2"));
+  EXPECT_EQ(job.progress().points_done(), 2);
+  EXPECT_EQ(job.progress().fraction(), 1);  // as a watch has shown it before
 }
 
 // Otherwise the job would be active until the next start of the server.
-TEST_F(JobJournalTest, AJobWhoseEndTheStoreRejectsFails) {
-  ASSERT_OK(store_->Commit([](Database& database) {
-    database.Execute(
-        "CREATE TRIGGER no_success BEFORE UPDATE ON jobs WHEN new.state = 4"
-        " BEGIN SELECT RAISE(ABORT, 'not this one'); END");
-  }));
-  std::vector<JobState> ends;
-  journal_.emplace(job_, *store_, false,
-                   [&](const JobRecord& ended) { ends.push_back(ended.job.state()); });
-  for (const size_t point : {0u, 1u, 2u}) Finish(point);
-  const uint64_t change = job_->last_state_change();
-  journal_->Ended(absl::OkStatus());
-  ASSERT_OK(store_->Flush());  // the rejected end
-  ASSERT_OK(store_->Flush());
-  const EnsembleJob job = Row().job;
-  EXPECT_EQ(job.state(), EnsembleJob::FAILED);
-  EXPECT_THAT(job.error().message(), testing::HasSubstr("not this one"));
+TEST_F(JobInStore, AJobWhoseEndTheStoreRejectsFails) {
+  const EnsembleJob job = EndedWithout("UPDATE ON jobs WHEN new.state = 4");
+  EXPECT_THAT(job.error().message(), HasSubstr("not this one"));
   EXPECT_EQ(job.progress().points_done(), 3);
-  EXPECT_THAT(ends, testing::ElementsAre(EnsembleJob::FAILED));
-  EXPECT_GT(job_->last_state_change(), change);
+  AwaitThat([this] { return book_->ended_jobs().at(EnsembleJob::FAILED) == 1; });
+  EXPECT_EQ(book_->ended_jobs().at(EnsembleJob::SUCCEEDED), 0);
 }
 
 // A row has the number as a double, which damage may have changed to anything.
-TEST_F(JobJournalTest, ADamagedNumberOfStoredBytesCountsAsZero) {
+TEST_F(JobInStore, ADamagedNumberOfStoredBytesCountsAsZero) {
+  JobRecord record = JobWithPoints(3);
+  ASSERT_OK(store_->Commit([&](Database& database) { InsertJob(database, record); }));
   for (const double damaged : {std::nan(""), 1e300, -1e300, -1.0}) {
-    record_.job.set_stored_bytes(damaged);
-    ASSERT_OK(store_->Commit([this](Database& database) { UpdateJob(database, record_); }));
+    record.job.set_stored_bytes(damaged);
+    ASSERT_OK(store_->Commit([&](Database& database) { UpdateJob(database, record); }));
     const auto principals = ReadFrom(*store_, &CountJobsByPrincipal);
     EXPECT_EQ(principals.at(0).stored_bytes(), 0) << damaged;
-    EXPECT_EQ(Job(record_).Numbers().bytes, 0) << damaged;
+    EXPECT_EQ(Job(record).Numbers().bytes, 0) << damaged;
   }
 }
 

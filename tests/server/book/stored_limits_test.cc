@@ -54,12 +54,10 @@ class StoredLimitsTest : public BookTest {
   absl::StatusOr<std::vector<v1::WatchEnsembleJobResponse>> Watched(
       const std::string& id, const std::string& resume_token = "",
       std::function<void()> after_first = nullptr) {
-    v1::WatchEnsembleJobRequest request;
-    request.set_name(JobName(id));
-    request.set_resume_token(resume_token);
     KeepingReader reader;
     reader.after_first = std::move(after_first);
-    const absl::Status status = RunWatch(*book_, WatchTiming(), "this process", request, reader);
+    const absl::Status status = RunWatch(*book_, WatchTiming(), "this process",
+                                         WatchRequest(JobName(id), resume_token), reader);
     if (!status.ok()) return status;
     return reader.messages;
   }
@@ -67,7 +65,7 @@ class StoredLimitsTest : public BookTest {
   void ExpectSound() {
     Stop();
     ASSERT_OK_AND_ASSIGN(const StoreSummary summary, CheckStore(path_));
-    EXPECT_THAT(summary.problems, testing::IsEmpty());
+    EXPECT_THAT(summary.problems, IsEmpty());
   }
 };
 
@@ -105,9 +103,8 @@ TEST_F(StoredLimitsTest, APinnedJobDoesNotExpire) {
   EXPECT_OK(book_->Update(kAnn, pinned, {.pinned = false}));
   book_->KeepLimits(absl::Now() + 100 * kDay);
   EXPECT_EQ(ResultsError(pinned), "RESULTS_EXPIRED");
-  EXPECT_EQ(ReasonOf(book_->Update(kAnn, pinned, {.pinned = true}).status()), "RESULTS_EXPIRED");
-  EXPECT_EQ(ReasonOf(book_->Update(kAnn, "nosuchjob", {.pinned = true}).status()), "JOB_NOT_FOUND");
-  EXPECT_EQ(ReasonOf(book_->Update(kBen, other, {.pinned = true}).status()), "JOB_NOT_FOUND");
+  EXPECT_EQ(ReasonOf(book_->Update(kAnn, pinned, {.pinned = true})), "RESULTS_EXPIRED");
+  EXPECT_EQ(ReasonOf(book_->Update(kBen, other, {.pinned = true})), "JOB_NOT_FOUND");
 }
 
 // The job was pinned after retention had found that its results may expire.
@@ -126,23 +123,23 @@ TEST_F(StoredLimitsTest, AJobThatWasPinnedMeanwhileDoesNotExpire) {
 TEST_F(StoredLimitsTest, AWatchOfExpiredResultsHasNoPartOfThem) {
   const std::string id = Done(kAnn, 1, 200);
   ASSERT_OK_AND_ASSIGN(const auto whole, Watched(id));
-  ASSERT_THAT(whole, testing::SizeIs(3));  // 100 points, 100 points, the end
+  ASSERT_THAT(whole, SizeIs(3));  // 100 points, 100 points, the end
   ASSERT_OK(store_->Commit([&](Database& database) {
     ExpireJob(database, FindJob(database, id, Grid::kLeftOut)->sequence);
   }));
   ASSERT_OK_AND_ASSIGN(const FoundJob found, book_->Find(kRoot, id, Grid::kLeftOut));
   ASSERT_OK_AND_ASSIGN(const auto points, book_->FinishedAfter(found.record, nullptr, 0, 100));
-  EXPECT_THAT(points, testing::IsEmpty());
+  EXPECT_THAT(points, IsEmpty());
   for (const std::string& token : {std::string(), whole.back().resume_token()}) {
     ASSERT_OK_AND_ASSIGN(const auto end, Watched(id, token));
-    ASSERT_THAT(end, testing::SizeIs(1));
+    ASSERT_THAT(end, SizeIs(1));
     EXPECT_TRUE(end.back().job().results_expired());
   }
-  EXPECT_EQ(ReasonOf(Watched(id, whole[0].resume_token()).status()), "RESULTS_EXPIRED");
+  EXPECT_EQ(ReasonOf(Watched(id, whole[0].resume_token())), "RESULTS_EXPIRED");
   // The watch of an active job has received the job only, and no points.
   auto token = *ParseToken<storage::ResumeToken>(whole[0].resume_token());
   token.set_finished(0);
-  EXPECT_EQ(ReasonOf(Watched(id, TokenText(token)).status()), "RESULTS_EXPIRED");
+  EXPECT_EQ(ReasonOf(Watched(id, TokenText(token))), "RESULTS_EXPIRED");
 }
 
 // The sweeper has removed some of the rows that the watch has not read yet.
@@ -155,7 +152,7 @@ TEST_F(StoredLimitsTest, AWatchEndsWithAnErrorIfResultsExpireMeanwhile) {
       database.Run("DELETE FROM results WHERE job = ? AND finish <= 150", job);
     }));
   };
-  EXPECT_EQ(ReasonOf(Watched(id, "", expire).status()), "RESULTS_EXPIRED");
+  EXPECT_EQ(ReasonOf(Watched(id, "", expire)), "RESULTS_EXPIRED");
 }
 
 // The principal with the most bytes loses results first. Its oldest results expire first. Then
@@ -215,7 +212,7 @@ TEST_F(StoredLimitsTest, OnlyAnAdminPinsMoreThanHalfOfTheStore) {
   ASSERT_OK(book_->Update(kAnn, first, {.pinned = true}));
   const absl::Status refused = book_->Update(kAnn, second, {.pinned = true}).status();
   EXPECT_THAT(refused, IsError(absl::StatusCode::kResourceExhausted, "TOO_MANY_PINNED_BYTES"));
-  EXPECT_THAT(std::string(refused.message()), testing::HasSubstr("permits 100000"));
+  EXPECT_THAT(std::string(refused.message()), HasSubstr("permits 100000"));
   EXPECT_OK(book_->Update(kAnn, first, {.pinned = true}));
   EXPECT_OK(book_->Update(kRoot, second, {.pinned = true}));
 }
@@ -244,7 +241,7 @@ TEST_F(StoredLimitsTest, AStoreFullOfPinnedJobsRejectsNewJobs) {
   book_->KeepLimits(absl::Now());
   const absl::Status refused = Create(kBen, Request(2)).status();
   EXPECT_THAT(refused, IsError(absl::StatusCode::kResourceExhausted, "TOO_MANY_STORED_BYTES"));
-  EXPECT_THAT(std::string(refused.message()), testing::HasSubstr("--max-store-bytes"));
+  EXPECT_THAT(std::string(refused.message()), HasSubstr("--max-store-bytes"));
   EXPECT_EQ(PointsOf(pinned), 900u);
   ASSERT_OK(book_->Update(kAnn, pinned, {.pinned = false}));
   EXPECT_OK(Create(kBen, Request(2)));  // the results of the unpinned job can expire now
@@ -260,7 +257,7 @@ TEST_F(StoredLimitsTest, JobsAndBytesOfEachPrincipalAreCounted) {
   EXPECT_EQ(before.at(0).stored_bytes(), Get(first).stored_bytes() + Get(second).stored_bytes());
   EXPECT_EQ(before.at(1).principal(), "ben");
   EXPECT_EQ(before.at(1).stored_jobs(), 1);
-  EXPECT_EQ(ReasonOf(book_->Result(kAnn, second, 3).status()), "RESULT_NOT_FOUND");
+  EXPECT_EQ(ReasonOf(book_->Result(kAnn, second, 3)), "RESULT_NOT_FOUND");
   ASSERT_OK(book_->Delete(kAnn, first));
   EXPECT_EQ(book_->JobsByPrincipal().at(0).stored_jobs(), 1);
   EXPECT_EQ(book_->JobsByPrincipal().at(0).stored_bytes(), Get(second).stored_bytes());

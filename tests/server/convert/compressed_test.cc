@@ -21,13 +21,10 @@ absl::StatusOr<std::string> ContentsOf(absl::string_view stream) {
 // Tries every other value of each byte of header, contents and checksum.
 TEST(Compressed, AChangedByteIsDetectedOrHarmless) {
   const std::string good = Compressed(SomeBytes());
-  for (size_t at = 0; at < good.size(); ++at) {
-    for (int change = 1; change < 256; ++change) {
-      std::string stream = good;
-      stream[at] = static_cast<char>(good[at] ^ change);
-      ASSERT_EQ(ContentsOf(stream).value_or(SomeBytes()), SomeBytes())
-          << "byte " << at << " changed by " << change;
-    }
+  for (size_t i = 0; i < 255 * good.size(); ++i) {
+    std::string changed = good;
+    changed[i / 255] = static_cast<char>(good[i / 255] ^ (1 + i % 255));
+    ASSERT_EQ(ContentsOf(changed).value_or(SomeBytes()), SomeBytes()) << i;
   }
 }
 

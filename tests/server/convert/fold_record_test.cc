@@ -1,5 +1,6 @@
 #include "server/convert/fold_record.h"
 
+#include "tests/core/one_point_spec.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
@@ -33,11 +34,8 @@ class StoredFold : public testing::Test {
  protected:
   absl::Status Checked(const FoldState& state) const { return CheckFoldState(*experiment_, state); }
 
-  const std::unique_ptr<const PointExperiment> experiment_ =
-      PointExperiment::Create({.experiment = &kMarkovProperty,
-                               .grid = {{kRho, {0.53}}, {kDelta, {0.1}}},
-                               .target = {.collisions = 1'000'000}},
-                              0);
+  const std::unique_ptr<const PointExperiment> experiment_ = PointExperiment::Create(
+      SpecOf(&kMarkovProperty, PaperPoint(0.1), {.collisions = 1'000'000}), 0);
   const ChunkPlan& plan_ = experiment_->plan();
   const BlockResult empty_ = experiment_->EmptyResult();
 };

@@ -20,10 +20,6 @@ AccessList ParsedList(const std::string& text) {
   return *std::move(list);
 }
 
-auto IsRefusedAs(const std::string& reason) {
-  return IsError(absl::StatusCode::kUnauthenticated, reason);
-}
-
 TEST(Sha256, EqualsTheTestVector) {
   EXPECT_EQ(HashText("abc"),
             "sha256:ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
@@ -42,25 +38,17 @@ TEST(AccessList, ATokenBelongsToItsPrincipal) {
   EXPECT_EQ(list.OfToken("three", kNoon)->role, Role::kAdmin);
 }
 
-TEST(AccessList, UnknownTokensAreInvalid) {
-  const AccessList list = ParsedList("token " + HashText("one") + " alice submit");
-  const std::string long_token(kLongestToken + 1, 'x');
-  for (const std::string& token : {std::string("two"), std::string(), std::string("one "),
-                                   std::string("on"), HashText("one"), long_token}) {
-    EXPECT_THAT(list.OfToken(token, kNoon), IsRefusedAs("CREDENTIALS_INVALID")) << token;
-  }
-}
-
 TEST(AccessList, AnEntryIsRefusedFromItsTimeOfExpiryOn) {
-  const AccessList list = ParsedList(
-      "token " + HashText("time") + " a read 2030-06-01T12:00:00Z\ntoken " + HashText("zone") +
-      " b read 2030-06-01T14:00:00.5+02:00\ntoken " + HashText("date") + " c read 2030-06-02\n");
-  EXPECT_OK(list.OfToken("time", kNoon - absl::Milliseconds(1)));
-  EXPECT_THAT(list.OfToken("time", kNoon), IsRefusedAs("CREDENTIALS_EXPIRED"));
-  EXPECT_OK(list.OfToken("zone", kNoon));
-  EXPECT_THAT(list.OfToken("zone", kNoon + absl::Seconds(1)), IsRefusedAs("CREDENTIALS_EXPIRED"));
-  EXPECT_OK(list.OfToken("date", kNoon + absl::Hours(11)));
-  EXPECT_THAT(list.OfToken("date", kNoon + absl::Hours(12)), IsRefusedAs("CREDENTIALS_EXPIRED"));
+  for (const auto& [text, expiry] :
+       {std::pair("2030-06-01T12:00:00Z", kNoon),
+        {"2030-06-01T14:00:00.5+02:00", kNoon + absl::Milliseconds(500)},
+        {"2030-06-02", kNoon + absl::Hours(12)}}) {
+    const AccessList list = ParsedList(absl::StrCat("token ", HashText("one"), " a read ", text));
+    EXPECT_OK(list.OfToken("one", expiry - absl::Milliseconds(1))) << text;
+    EXPECT_THAT(list.OfToken("one", expiry),
+                IsError(absl::StatusCode::kUnauthenticated, "CREDENTIALS_EXPIRED"))
+        << text;
+  }
 }
 
 // A token at every place of a line.
@@ -71,7 +59,6 @@ TEST(AccessList, ErrorsNameTheLineAndDoNotQuoteIt) {
       {secret, "the line of a token"},
       {"token " + secret, "the line of a token"},
       {"token " + secret + " alice read", "sha256: and 64 hexadecimal digits"},
-      {"token sha256:" + secret + " alice read", "64 hexadecimal digits"},
       {"token " + good + "0 alice read", "64 hexadecimal digits"},
       {"token " + good.substr(0, 70) + "g alice read", "64 hexadecimal digits"},
       {secret + " " + good + " alice read", "permitted: token sha256:HEX"},
@@ -129,9 +116,6 @@ TEST_F(AccessFile, OnlyFilesOfTheServersUserOrRootAreAccepted) {
 TEST_F(AccessFile, OnlyARegularFileIsRead) {
   EXPECT_THAT(Error(), HasSubstr("cannot be opened"));
   ASSERT_EQ(mkfifo(file_.path.c_str(), 0600), 0);  // would wait for a writer
-  EXPECT_EQ(Error(), "--access-file=" + file_.path + ": is not a regular file");
-  unlink(file_.path.c_str());
-  std::filesystem::create_directory(file_.path);
   EXPECT_EQ(Error(), "--access-file=" + file_.path + ": is not a regular file");
 }
 

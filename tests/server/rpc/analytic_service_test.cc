@@ -1,86 +1,73 @@
+#include "core/closed_form/exchange_rate.h"
+#include "core/closed_form/kernel.h"
+#include "core/closed_form/mean_free_time.h"
+#include "core/closed_form/pair_measures.h"
 #include "tests/server/preamble.h"
 
 namespace ballpiston::server {
 namespace {
 
-class AnalyticServiceTest : public testing::Test {
- protected:
-  AnalyticServiceTest() {
-    request_.add_rho(kPaperRho);
-    request_.add_delta(0.2);
-  }
-
-  v1::EvaluatePairsResponse Answer() const {
-    return RunningServer().Answered<v1::EvaluatePairsResponse>(request_);
-  }
-
-  v1::EvaluatePairsRequest request_;
-};
-
-// No field was forgotten. A number that is 0 has no bytes.
-void ExpectNoZero(const google::protobuf::Message& message) {
-  std::vector<const google::protobuf::FieldDescriptor*> filled;
-  message.GetReflection()->ListFields(message, &filled);
-  EXPECT_EQ(std::ssize(filled), message.GetDescriptor()->field_count()) << message.DebugString();
+v1::EvaluatePairsResponse Evaluated(const std::string& request) {
+  return RunningServer().Answered<v1::EvaluatePairsResponse>(
+      FromText<v1::EvaluatePairsRequest>(request));
 }
 
-TEST_F(AnalyticServiceTest, EveryPairHasItsPointRhoOutermost) {
-  request_.add_rho(0.55);
-  request_.add_delta(0.1);
-  const auto points = Answer().points();
-  ASSERT_EQ(points.size(), 4);
-  EXPECT_EQ(points[1].rho(), kPaperRho);
-  EXPECT_EQ(points[1].delta(), 0.1);
-  EXPECT_EQ(points[2].rho(), 0.55);
-}
-
-// Temperatures follow the betas.
-TEST_F(AnalyticServiceTest, ValuesAreThoseOfTheClosedForms) {
-  for (const double epsilon : {0.0, 0.25, 0.5}) request_.add_epsilon(epsilon);
-  request_.add_outgoing_epsilon(0.125);
-  request_.add_beta(4);
-  request_.add_temperature(2);
-  const v1::PairAnalytics point = Answer().points(0);
-  EXPECT_NEAR(point.gas_delta_bound(), 0.2, 1e-14);
-  EXPECT_NEAR(point.tau_ball_piston(), 4 * point.volume() / point.area_ball_piston(),
-              1e-13 * point.tau_ball_piston());
-  ExpectNoZero(point);
-  ASSERT_EQ(point.energies_size(), 3);
-  ExpectNoZero(point.energies(1));
-  EXPECT_NEAR(point.energies(0).phi(), std::sqrt(8) / M_PI, 1e-15);
-  EXPECT_NEAR(point.energies(1).phi(), 1, 1e-15);
-  EXPECT_NEAR(point.energies(2).phi(), std::sqrt(2), 1e-15);
-  EXPECT_NEAR(point.energies(1).mean_free_time_conditional(), point.tau_ball_piston(), 1e-12);
-  ASSERT_EQ(point.energies(1).kernel_size(), 1);
-  EXPECT_NEAR(point.energies(1).kernel(0), 0.5 / (2 * M_PI * std::sqrt(0.125 * 0.125)), 1e-14);
-  ASSERT_EQ(point.canonical_size(), 2);
-  EXPECT_EQ(point.canonical(0).temperature(), 0.25);
-  EXPECT_NEAR(point.canonical(0).mean_f(), 1 / std::sqrt(8 * M_PI), 1e-15);
-  EXPECT_NEAR(point.canonical(0).mean_h(), 0.125 * point.canonical(0).mean_f(), 1e-15);  // 2 T^2
-  const v1::CanonicalAnalytics& canonical = point.canonical(1);
-  ExpectNoZero(canonical);
-  EXPECT_EQ(canonical.beta(), 0.5);
-  EXPECT_EQ(canonical.temperature(), 2);
-  EXPECT_NEAR(canonical.mean_f(), 1 / std::sqrt(M_PI), 1e-15);
-  const double rate = canonical.mean_f() * point.area_ball_piston() / point.volume();
-  EXPECT_NEAR(canonical.exchange_rate(), rate, 1e-15 * rate);
-  EXPECT_EQ(canonical.static_conductivity(), canonical.exchange_rate() / 2);
-  const double limit = std::sqrt(2 / M_PI) / point.cell_area();
-  EXPECT_NEAR(canonical.rare_limit_exchange_rate(), limit, 1e-15 * limit);
-}
-
-TEST_F(AnalyticServiceTest, TheWholeRangeOfTemperaturesIsAnswered) {
-  request_.set_delta(0, 1e-100);
-  for (const double temperature : {1e-120, 1e120}) {
-    request_.add_temperature(temperature);
-    request_.add_beta(temperature);
+// The numbers that are not in lists, in the order of the .proto file.
+std::vector<double> NumbersOf(const google::protobuf::Message& message) {
+  std::vector<double> numbers;
+  for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
+    const auto* field = message.GetDescriptor()->field(i);
+    if (field->is_repeated()) continue;
+    numbers.push_back(message.GetReflection()->GetDouble(message, field));
   }
-  const v1::PairAnalytics point = Answer().points(0);
-  for (const v1::CanonicalAnalytics& row : point.canonical()) {
-    for (const double value : {row.mean_f(), row.mean_h(), row.exchange_rate(),
-                               row.static_conductivity(), row.rare_limit_exchange_rate()}) {
-      EXPECT_TRUE(std::isnormal(value)) << row.DebugString();
+  return numbers;
+}
+
+TEST(AnalyticService, EveryFieldHasItsClosedFormRhoOutermost) {
+  const auto answer = Evaluated(
+      "rho: [0.53, 0.55] delta: [0.2, 0.1] epsilon: [0, 0.25, 0.5] outgoing_epsilon: [0.125, 0.25] "
+      "beta: 4 temperature: 2");
+  ASSERT_EQ(answer.points_size(), 4);
+  for (int i = 0; i < 4; ++i) {
+    const v1::PairAnalytics& point = answer.points(i);
+    const double rho = i < 2 ? 0.53 : 0.55;
+    const PairGeometry pair = *PairGeometry::Create(rho, i % 2 == 0 ? 0.2 : 0.1);
+    const PairMeasures measures = Measures(pair);
+    const MeanFreeTimes times = MeanFreeTimesOf(pair);
+    EXPECT_THAT(NumbersOf(point),
+                ElementsAre(rho, pair.delta(), pair.lambda(), measures.eta, measures.cell_area,
+                            measures.volume, measures.area_ball_piston, measures.area_ball_wall,
+                            measures.area_piston_wall, times.ball_piston, times.ball_wall,
+                            times.piston_wall, PairDeltaBound(rho), GasDeltaBound(rho),
+                            RareLimitRate(rho)));
+    ASSERT_EQ(point.energies_size(), 3);
+    for (int j = 0; j < 3; ++j) {
+      const v1::EnergyAnalytics& energy = point.energies(j);
+      const double epsilon = 0.25 * j;
+      EXPECT_THAT(
+          NumbersOf(energy),
+          ElementsAre(epsilon, Phi(epsilon), PairCollisionRate(epsilon), PairEnergyCurrent(epsilon),
+                      PairSquaredEnergyTransfer(epsilon), ConditionalMeanFreeTime(pair, epsilon)));
+      EXPECT_THAT(energy.kernel(),
+                  ElementsAre(PairKernel(epsilon, 0.125), PairKernel(epsilon, 0.25)));
     }
+    ASSERT_EQ(point.canonical_size(), 2);
+    for (const auto& [row, temperature] : {std::pair(0, 0.25), {1, 2.0}}) {
+      const CanonicalAverages averages = AveragesAt(1 / temperature);
+      const double rate = ExchangeRate(measures, temperature);
+      EXPECT_THAT(NumbersOf(point.canonical(row)),
+                  ElementsAre(1 / temperature, temperature, averages.mean_f,
+                              averages.mean_energy_current, averages.mean_h, rate,
+                              StaticConductivity(rate), RareLimitExchangeRate(rho, temperature)));
+    }
+  }
+}
+
+TEST(AnalyticService, TheWholeRangeOfTemperaturesIsAnswered) {
+  const auto answer =
+      Evaluated("rho: 0.53 delta: 1e-100 temperature: [1e-120, 1e120] beta: [1e-120, 1e120]");
+  for (const v1::CanonicalAnalytics& row : answer.points(0).canonical()) {
+    for (const double number : NumbersOf(row)) EXPECT_TRUE(std::isnormal(number)) << number;
   }
 }
 

@@ -48,7 +48,6 @@ std::vector<BadRequest> BadRequests() {
   const std::string pair = "rho: 0.53 delta: 0.2 ";
   const std::string orbit = "rho: 0.53 delta: 0.15 events: 1 ";
   return {
-      {create, with("experiment: 0"), {"spec.experiment"}},
       {create,
        with("grid { " + Times(10'000, "rho: -1 ") + "}"),
        {"spec.grid.rho[1]", kAndMore},
@@ -58,13 +57,12 @@ std::vector<BadRequest> BadRequests() {
             "}"),
        {"spec.grid.table[0]", kAndMore},
        "(and 100 more)"},
-      {create, with("grid { table: ['x', 'delta'] }"), {"spec.grid.table[0]"}},
-      {create, hit + "request_id: 'not a uuid'", {"request_id"}},
       {create, hit + "priority: 101", {"priority"}, "-100 to 100"},
-      {create, hit + "priority: -101", {"priority"}, "-100 to 100"},
       {create,
        with("grid { rho: 0.4 } target { samples: 0 }") + "request_id: 'x'",
        {"request_id", "spec.grid.rho[1]", "spec.target.samples"}},
+      {create, hit + "labels { key: 'A' value: 'x' }", {"labels"}, "has the key \"A\""},
+      {create, hit + "labels { key: 'a' value: ' ' }", {"labels"}, "has the value \" \""},
       {"PlanEnsembleJob",
        with("grid { rho: 0.4 epsilon: 0.7 } target { tolerance: 0 }"),
        {"spec.grid.rho[1]", "spec.grid.epsilon[2]", "spec.target.tolerance"}},
@@ -73,10 +71,9 @@ std::vector<BadRequest> BadRequests() {
       {update, job, {"update_mask"}, mask},
       {update, job + "update_mask { paths: '*' }", {"update_mask"}, mask},
       {update,
-       job + "job { priority: 101 } update_mask { paths: ['pinned', 'state', 'priority'] }",
+       job + "job { priority: -101 } update_mask { paths: ['pinned', 'state', 'priority'] }",
        {"update_mask", "job.priority"},
        mask},
-      {update, job + "update_mask { paths: 'job.pinned' }", {"update_mask"}, mask},
       {list, "page_size: -1", {"page_size"}},
       {list, "page_token: '!!!'", {"page_token"}},
       {list, PageToken(v1::ListEnsembleJobsRequest(), -1), {"page_token"}},
@@ -94,7 +91,6 @@ std::vector<BadRequest> BadRequests() {
        "is 253402300800; permitted: -62135596800 to 253402300799"},
       {list, "since { nanos: -1 }", {"since.nanos"}},
       {results, of_job + "page_size: -5", {"page_size"}},
-      {results, of_job + "page_token: 'x'", {"page_token"}},
       {results, of_job + PageToken(other_results, 1), {"page_token"}},
       {results, of_job + "view: 9", {"view"}},
       {pairs, "", {"rho", "delta"}},
@@ -136,7 +132,6 @@ std::vector<BadRequest> BadRequests() {
        orbit + "cells: '1001'",
        {"cells"},
        "1001 has 1001 cells; permitted in a trace: 1 to 1000"},
-      {trace, orbit + R"(cells: "x\n")", {"cells"}, "x\\n"},
       {trace, orbit + "cells: '4' delta: 0.3", {"delta"}, "no two pistons may overlap"},
       {trace, orbit + "temperature: 1", {"temperature"}},  // a pair has no temperature
       {sample, hit, {"spec.grid"}, "has 6 points; permitted: one"},
@@ -156,26 +151,21 @@ std::vector<BadRequest> BadRequests() {
        "is gas-equilibrium"}};
 }
 
-grpc::Status Send(const RunningServer& server, const BadRequest& bad) {
-  using namespace google::protobuf;
-  const std::unique_ptr<Message> request(
-      MessageFactory::generated_factory()
-          ->GetPrototype(DescriptorPool::generated_pool()->FindMessageTypeByName(
-              "ballpiston.v1." + bad.method + "Request"))
-          ->New());
-  EXPECT_TRUE(TextFormat::MergeFromString(bad.request, request.get()));
-  return server.Call(*request);
-}
-
 TEST(BadRequests, EveryBadFieldIsNamed) {
+  using namespace google::protobuf;
   RunningServer server;
   for (BadRequest& bad : BadRequests()) {
     SCOPED_TRACE(bad.method + " " + bad.request.substr(0, 200));
-    const grpc::Status status = Send(server, bad);
+    const Descriptor* type = DescriptorPool::generated_pool()->FindMessageTypeByName(
+        "ballpiston.v1." + bad.method + "Request");
+    const std::unique_ptr<Message> request(
+        MessageFactory::generated_factory()->GetPrototype(type)->New());
+    ASSERT_TRUE(TextFormat::MergeFromString(bad.request, request.get()));
+    const grpc::Status status = server.Call(*request);
     EXPECT_THAT(status,
                 StatusIs(grpc::StatusCode::INVALID_ARGUMENT, testing::HasSubstr(bad.message)));
     EXPECT_THAT(ReasonOf(status), testing::AnyOf("INVALID_SPEC", "INVALID_REQUEST"));
-    const Fields named = DetailsOf(status).fields;
+    const Fields named = FieldsOf(status);
     if (bad.fields.back() == kAndMore) {
       bad.fields.pop_back();
       EXPECT_THAT(named, testing::IsSupersetOf(bad.fields));
@@ -192,7 +182,7 @@ TEST(BadRequests, AFieldOfANewerClientIsRefused) {
   request.GetReflection()->MutableUnknownFields(&request)->AddVarint(100, 1);
   const grpc::Status status = server.Call(request);
   EXPECT_EQ(ReasonOf(status), "INVALID_REQUEST");
-  EXPECT_THAT(DetailsOf(status).fields, testing::ElementsAre("request"));
+  EXPECT_THAT(FieldsOf(status), testing::ElementsAre("request"));
 }
 
 // A few kilobytes could become a gigabyte.

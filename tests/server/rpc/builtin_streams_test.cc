@@ -5,10 +5,7 @@
 namespace ballpiston::server {
 namespace {
 
-size_t ThreadsOfThisProcess() {
-  const std::filesystem::directory_iterator all("/proc/self/task");
-  return static_cast<size_t>(std::distance(begin(all), end(all)));
-}
+size_t ThreadsOfThisProcess() { return NamesIn("/proc/self/task").size(); }
 
 TEST(BuiltinStreams, ReflectionStreamsUseLimitedThreadsAndOtherCallsGoOn) {
   RunningServer server;

@@ -1,4 +1,3 @@
-
 #include "tests/server/preamble.h"
 #include "tests/server/worker/sample_leases.h"
 
@@ -21,30 +20,25 @@ double WorkOfPoints(const v1::PlanEnsembleJobResponse& plan) {
   return work;
 }
 
-// One server for all: measuring its rates takes some 0.3 s.
 class PlanServiceTest : public testing::Test {
  protected:
-  // The core's experiments.
-  static void SetUpTestSuite() { server_ = new RunningServer({.factory = nullptr}); }
-  static void TearDownTestSuite() { delete server_; }
-
   static v1::PlanEnsembleJobRequest Request(const v1::EnsembleSpec& spec) {
     v1::PlanEnsembleJobRequest request;
     *request.mutable_spec() = spec;
     return request;
   }
 
-  static v1::PlanEnsembleJobResponse PlanOf(const v1::EnsembleSpec& spec) {
-    return server_->Answered<v1::PlanEnsembleJobResponse>(Request(spec));
+  v1::PlanEnsembleJobResponse PlanOf(const v1::EnsembleSpec& spec) const {
+    return server_.Answered<v1::PlanEnsembleJobResponse>(Request(spec));
   }
 
   // The extra time of a job's first point, because caches are cold.
-  static double FirstPoint() {
+  double FirstPoint() const {
     const v1::PlanEnsembleJobResponse plan = PlanOf(QuestionOf(kEquilibrium));
     return plan.work() - WorkOfPoints(plan);
   }
 
-  static inline RunningServer* server_ = nullptr;
+  const RunningServer server_{{.factory = nullptr}};  // the core's experiments
 };
 
 TEST_F(PlanServiceTest, EveryExperimentHasItsLadderCheapestFirst) {
@@ -81,9 +75,9 @@ TEST_F(PlanServiceTest, ABudgetBelowTheFirstSamplesIsRejected) {
   spec.set_model(v1::EnsembleSpec::BILLIARD);
   spec.mutable_target()->mutable_budget()->set_seconds(1);
   for (const grpc::Status& status :
-       {server_->Call(Request(spec)), server_->Call(CreateRequest(spec))}) {
+       {server_.Call(Request(spec)), server_.Call(CreateRequest(spec))}) {
     EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT, HasSubstr("budget >= ")));
-    EXPECT_THAT(DetailsOf(status).fields, ElementsAre("spec.target.budget"));
+    EXPECT_THAT(FieldsOf(status), ElementsAre("spec.target.budget"));
   }
   spec.set_model(v1::EnsembleSpec::AUTO);  // the closed form needs no samples
   PlanOf(spec);
@@ -113,7 +107,7 @@ TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandOfItsPoints) {
   }
   EXPECT_NEAR((plan.work() - FirstPoint()) / (100 * WorkOfPoints(plan)), 1, 1e-9);
   EXPECT_EQ(plan.workers(), 2);
-  EXPECT_EQ(server_->List().jobs_size(), 0);  // a plan creates no job
+  EXPECT_EQ(server_.List().jobs_size(), 0);  // a plan creates no job
 }
 
 // Every second point takes 150 times as long.

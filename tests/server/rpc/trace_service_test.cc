@@ -1,8 +1,6 @@
-
 #include "server/convert/trace.h"
 #include "server/rpc/quota.h"
 #include "tests/server/preamble.h"
-#include "tests/server/rpc/message_stream.h"
 
 namespace ballpiston::server {
 namespace {
@@ -21,13 +19,6 @@ const v1::TraceOrbitRequest kLong = TraceRequest(kMaxTracedEvents);
 
 class TraceServiceTest : public testing::Test {
  protected:
-  std::vector<v1::TraceOrbitResponse> Trace(const v1::TraceOrbitRequest& request) {
-    TraceStream stream(server_, request);
-    auto messages = stream.ToTheEnd();
-    EXPECT_OK(stream.reader->Finish());
-    return messages;
-  }
-
   RunningServer server_;
 };
 
@@ -35,7 +26,7 @@ class TraceServiceTest : public testing::Test {
 // piston.
 TEST_F(TraceServiceTest, TheStartComesFirstThenAsManyEventsAsAsked) {
   for (const int64_t events : {1, kEventsOfMessage, kEventsOfMessage + 1, 1000}) {
-    const auto messages = Trace(TraceRequest(events));
+    const auto messages = TraceStream(server_, TraceRequest(events)).ToTheEnd();
     ASSERT_GE(messages.size(), 2u);
     const v1::TraceStart& start = messages[0].start();
     EXPECT_EQ(start.event(), v1::TraceEvent::start);
@@ -51,10 +42,10 @@ TEST_F(TraceServiceTest, TheStartComesFirstThenAsManyEventsAsAsked) {
       for (const v1::TraceEvent& event : message.events()) {
         EXPECT_GE(event.time(), time);
         time = event.time();
-        EXPECT_EQ(event.has_free_time(), last.contains(event.event()));
-        EXPECT_NEAR(event.free_time(),
-                    last.contains(event.event()) ? time - last[event.event()] : 0, 1e-9);
-        last[event.event()] = time;
+        const auto [before, is_first] = last.try_emplace(event.event(), event.time());
+        EXPECT_EQ(event.has_free_time(), !is_first);
+        EXPECT_NEAR(event.free_time(), event.time() - before->second, 1e-9);
+        before->second = event.time();
       }
     }
     EXPECT_EQ(told, events);
@@ -63,7 +54,7 @@ TEST_F(TraceServiceTest, TheStartComesFirstThenAsManyEventsAsAsked) {
 
 TEST_F(TraceServiceTest, EventsHaveTheBodiesThatTakePart) {
   int exchanges = 0;
-  const auto messages = Trace(TraceRequest(2000, "3x3"));
+  const auto messages = TraceStream(server_, TraceRequest(2000, "3x3")).ToTheEnd();
   EXPECT_EQ(messages.at(0).start().cells(), "3x3");
   EXPECT_EQ(messages[0].start().temperature(), 1);  // by default
   for (const auto& message : messages) {
@@ -86,11 +77,10 @@ TEST_F(TraceServiceTest, EventsHaveTheBodiesThatTakePart) {
 
 TEST_F(TraceServiceTest, ATraceCountsAsAStreamUntilItsReaderGoes) {
   RunningServer server({.limits = {.max_streams_per_principal = 1}});
-  auto first = std::make_unique<TraceStream>(server, TraceRequest(kMaxTracedEvents, "1000"));
+  std::optional<TraceStream> first(std::in_place, server, TraceRequest(kMaxTracedEvents, "1000"));
   ASSERT_TRUE(first->Next());
   EXPECT_THAT(TraceStream(server, TraceRequest(1)).End(),
               IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_STREAMS"));
-  first->context.TryCancel();
   first.reset();
   // Then the server knows that the trace has ended.
   AwaitThat([&] { return TraceStream(server, TraceRequest(1)).Next().has_value(); });
@@ -121,8 +111,7 @@ TEST_F(TraceServiceTest, SampledCollisionsHaveAllColumns) {
   *request.mutable_spec() = Equilibrium(1, 100);
   MessageStream<v1::SampleCollisionsResponse> stream(server_, request);
   v1::SampleCollisionsResponse rows;
-  while (const auto part = stream.Next()) rows.MergeFrom(*part);
-  ASSERT_OK(stream.reader->Finish());
+  for (const auto& part : stream.ToTheEnd()) rows.MergeFrom(part);
   const auto* columns = rows.GetDescriptor();
   for (int i = 0; i < columns->field_count(); ++i) {
     ASSERT_EQ(rows.GetReflection()->FieldSize(rows, columns->field(i)), 100) << i;

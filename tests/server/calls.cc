@@ -1,13 +1,25 @@
-#include "tests/server/call_by_name.h"
+#include "tests/server/calls.h"
+
+#include "grpc/grpc.h"
 
 namespace ballpiston::server {
 
 using grpc::ByteBuffer;
 using grpc::internal::RpcMethod;
 
-std::string PathOf(const google::protobuf::MethodDescriptor& method) {
-  return "/" + method.service()->full_name() + "/" + method.name();
+std::shared_ptr<grpc::Channel> OwnChannel(
+    const std::string& address, const std::shared_ptr<grpc::ChannelCredentials>& credentials,
+    grpc::ChannelArguments arguments) {
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);  // whatever http_proxy is
+  arguments.SetServiceConfigJSON(absl::StrCat(R"({"methodConfig": [{"name": [{}], "timeout": ")",
+                                              std::chrono::seconds(kPatience).count(), R"(s"}]})"));
+  return grpc::CreateCustomChannel(
+      address, credentials != nullptr ? credentials : grpc::InsecureChannelCredentials(),
+      arguments);
 }
+
+// ---- a method by its name ----
 
 std::string PathOf(const google::protobuf::Descriptor& request) {
   const google::protobuf::ServiceDescriptor& service = *request.file()->service(0);
@@ -21,7 +33,6 @@ std::string PathOf(const google::protobuf::Descriptor& request) {
 // A unary method is called as a stream of one message.
 NamedCall::NamedCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
                      const std::vector<std::string>& authorization) {
-  context_.set_deadline(std::chrono::system_clock::now() + kPatience);
   for (const std::string& value : authorization) context_.AddMetadata("authorization", value);
   stream_.reset(grpc::internal::ClientReaderWriterFactory<ByteBuffer, ByteBuffer>::Create(
       channel.get(), RpcMethod(method.c_str(), RpcMethod::BIDI_STREAMING), &context_));
@@ -63,9 +74,34 @@ grpc::Status CallByName(const std::shared_ptr<grpc::Channel>& channel, const std
   return call.Finish();
 }
 
-std::vector<std::string> Bearer(const std::string& token) {
-  if (token.empty()) return {};
-  return {"Bearer " + token};
+// ---- TestClient ----
+
+grpc::Status TestClient::Call(const google::protobuf::Message& request,
+                              google::protobuf::Message* answer) const {
+  std::string bytes;
+  const grpc::Status status = CallByName(channel_, PathOf(*request.GetDescriptor()),
+                                         request.SerializeAsString(), {}, &bytes);
+  EXPECT_TRUE(answer == nullptr || answer->ParseFromString(bytes));
+  return status;
+}
+
+std::string TestClient::Succeeded(const v1::EnsembleSpec& spec) const {
+  const std::string name = Submit(spec);
+  EXPECT_EQ(AwaitEnd(name).state(), v1::EnsembleJob::SUCCEEDED);
+  return name;
+}
+
+std::vector<std::string> TestClient::ResultBytes(const std::string& name) const {
+  v1::ListResultsRequest request;
+  request.set_parent(name);
+  std::vector<std::string> bytes;
+  for (const auto& page : Pages<v1::ListResultsResponse>(request)) {
+    for (v1::PointResult result : page.results()) {
+      result.clear_name();
+      bytes.push_back(result.SerializeAsString());
+    }
+  }
+  return bytes;
 }
 
 }  // namespace ballpiston::server
