@@ -58,12 +58,6 @@ TEST_P(EveryTarget, HoldsForItsSeedsAndMutationsOfThem) {
   }
 }
 
-TEST(Seeds, AFileThatCannotBeReadIsAnError) {
-  const TemporaryFolder folder;
-  std::filesystem::create_directories(folder.File("text/a_folder"));
-  EXPECT_THROW(SeedsOf({"text", nullptr}, folder.path()), std::runtime_error);
-}
-
 INSTANTIATE_TEST_SUITE_P(Fuzz, EveryTarget, testing::ValuesIn(Targets()),
                          [](const auto& info) { return info.param.name; });
 
