@@ -83,7 +83,7 @@ inline bool RequireJudged(const v1::EnsembleSpec& spec, const std::string& input
     if (IsOneIn(kOneIn, input)) RequireSameAfterConversion(checked.spec);
     return true;
   }
-  if (IsOneIn(4, input)) questions::CheckRefusal(spec, checked.violations);
+  questions::CheckRefusal(spec, checked.violations);
   RequireSendable(server::InvalidSpec(checked.violations), input);
   return false;
 }
