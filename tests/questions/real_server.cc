@@ -32,7 +32,8 @@ class Conversation {
     const std::string name = Answered(client_.Create(request)).name();
     if (!(plan.work() <= most_seconds)) CancelWhenItRuns(name);
     const std::string outcome = Judged(AwaitState(name, client::HasEnded));
-    static_cast<void>(client_.Delete(name));
+    const absl::Status deleted = client_.Delete(name);
+    Require(deleted.ok(), kCallCheck, deleted.ToString());
     return outcome;
   }
 
@@ -47,6 +48,7 @@ class Conversation {
     const auto job = client_.Create(question_);
     if (job.ok()) static_cast<void>(client_.Cancel(job->name()));
     Require(!job.ok(), "refusal", "planning is refused, and running is not");
+    Require(absl::IsInvalidArgument(job.status()), kCallCheck, job.status().ToString());
     return "refused";
   }
 
@@ -116,7 +118,10 @@ std::string Ask(const v1::EnsembleSpec& question, double most_seconds,
                 std::unique_ptr<RunningServer>& server) {
   if (server == nullptr) server = std::make_unique<RunningServer>();
   try {
-    return Conversation(question, server->process, server->client).Have(most_seconds);
+    std::string outcome =
+        Conversation(question, server->process, server->client).Have(most_seconds);
+    Require(!server->process.AwaitEnd({}), kCallCheck, "the server died after its last answer");
+    return outcome;
   } catch (const Violation& broken) {
     Rethrow(broken, server);
   } catch (const std::runtime_error& late) {  // tests/support/await.h

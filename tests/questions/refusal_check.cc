@@ -46,18 +46,20 @@ Texts TextsOfGridField(const v1::Grid& grid, absl::string_view path) {
 Texts TextsOf(const v1::EnsembleSpec& spec, absl::string_view field) {
   if (absl::ConsumePrefix(&field, "grid.")) return TextsOfGridField(spec.grid(), field);
   const v1::Target& target = spec.target();
-  const EnsembleSpec core = server::CheckSpec(spec).spec;
+  const double budget =
+      static_cast<double>(target.budget().seconds()) + target.budget().nanos() / 1e9;
   const std::map<absl::string_view, Texts> others = {
       {"grid", {"points"}},
       {"experiment", {absl::StrCat(int{spec.experiment()}), "is missing"}},
-      {"model", {absl::StrCat(int{spec.model()}), std::string(Name(core.model))}},
+      {"model",
+       {absl::StrCat(int{spec.model()}), std::string(Name(server::CheckSpec(spec).spec.model))}},
       {"precision", {absl::StrCat(int{spec.precision()}), "single"}},
       {"verify", {"is set"}},
       {"target.samples", {absl::StrCat(target.samples()), "by default"}},
       {"target.collisions", {absl::StrCat(target.collisions())}},
       {"target.tolerance", {NumberText(target.tolerance())}},
       {"target.estimate", {absl::CEscape(target.estimate().substr(0, kLongestText))}},
-      {"target.budget", {NumberText(core.target.budget_seconds.value_or(0)), "is set together"}},
+      {"target.budget", {NumberText(budget), "is set together"}},
       {"target.budget.nanos", {absl::StrCat(target.budget().nanos())}}};
   const auto found = others.find(field);
   return found == others.end() ? Texts() : found->second;
@@ -82,8 +84,9 @@ bool NamesAValueOfTheGrid(const v1::Grid& grid, absl::string_view description) {
 
 void CheckRefusal(const v1::EnsembleSpec& spec, const std::vector<FieldViolation>& violations) {
   for (const auto& [path, description] : violations) {
-    if (absl::StartsWith(description, "unknown field number")) continue;  // of a newer client
     absl::string_view field = path;
+    const bool is_unknown = absl::StartsWith(description, "unknown field number");
+    if (is_unknown && absl::StartsWith(field, "spec")) continue;  // of a newer client
     const Texts texts = absl::ConsumePrefix(&field, "spec.") ? TextsOf(spec, field) : Texts();
     const auto require = [&](bool is_so, const char* what) {
       Require(is_so, "refusal", what, ": ", path, " ", description);
