@@ -1,7 +1,7 @@
 #include "tests/fuzz/mutation.h"
 
+#include "absl/strings/escaping.h"
 #include "absl/strings/numbers.h"
-#include "absl/strings/str_replace.h"
 
 namespace ballpiston::fuzz {
 namespace {
@@ -63,16 +63,23 @@ int64_t Integer(Dice& dice, int64_t now) {
   }
 }
 
-std::string Text(Dice& dice, std::string now) {
-  if (dice.OneIn(3)) return kWords[dice.Below(kWords.size())];
-  MutateBytes(dice, now);
-  return now;
+// `now` and the result: in quotes, with escapes.
+std::string Text(Dice& dice, const std::string& now) {
+  std::string text;
+  if (dice.OneIn(3)) {
+    text = kWords[dice.Below(kWords.size())];
+  } else {
+    if (!now.empty()) absl::CUnescape(now.substr(1, now.size() - 2), &text);
+    MutateBytes(dice, text);
+  }
+  return absl::StrCat("\"", absl::CEscape(text), "\"");
 }
 
 // A new value of the field, often near the value `now`; both in the text format.
 std::string NewValue(Dice& dice, const FieldDescriptor& field, const std::string& now) {
   double number;
   int64_t integer;
+  if (!absl::SimpleAtoi(now, &integer)) integer = 0;
   switch (field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_DOUBLE:
       if (!absl::SimpleAtod(now, &number)) number = 0.55;
@@ -82,11 +89,14 @@ std::string NewValue(Dice& dice, const FieldDescriptor& field, const std::string
     case FieldDescriptor::CPPTYPE_BOOL:
       return dice.OneIn(2) ? "true" : "false";
     case FieldDescriptor::CPPTYPE_STRING:
-      return absl::StrCat("\"", Text(dice, absl::StrReplaceAll(now, {{"\"", ""}})), "\"");
+      return Text(dice, now);
     case FieldDescriptor::CPPTYPE_MESSAGE:
       return "{}";
+    case FieldDescriptor::CPPTYPE_INT32:
+      return absl::StrCat(static_cast<int32_t>(Integer(dice, integer)));
+    case FieldDescriptor::CPPTYPE_UINT64:
+      return absl::StrCat(static_cast<uint64_t>(Integer(dice, integer)));
     default:
-      if (!absl::SimpleAtoi(now, &integer)) integer = 0;
       return absl::StrCat(Integer(dice, integer));
   }
 }

@@ -139,10 +139,10 @@ void CheckPairsRequest(const v1::EvaluatePairsRequest& request, const std::strin
   }
 }
 
-void RequireFiniteNumbers(const v1::TraceOrbitResponse& message) {
+void RequireNumbers(const v1::TraceOrbitResponse& message) {
   const std::string text = message.ShortDebugString();
-  for (const char* other : {": nan", ": -nan", ": inf", ": -inf"}) {
-    Require(!absl::StrContains(text, other), "every number is finite");
+  for (const char* other : {": nan", ": -nan", ": inf", ": -inf", "energy: -"}) {
+    Require(!absl::StrContains(text, other), "every number is finite, no energy negative");
   }
 }
 
@@ -152,13 +152,13 @@ void CheckTraceRequest(const v1::TraceOrbitRequest& request, const std::string& 
   if (!messages.ok()) return RequireSendable(messages.status(), bytes);
   v1::TraceOrbitResponse message;
   messages->FillNext(message);
-  RequireFiniteNumbers(message);
+  RequireNumbers(message);
   const v1::TraceStart& start = message.start();
   Require(start.eta() >= 0 && start.tip() > 0, "a geometry");
   Require(start.balls_size() >= 1 && start.pistons_size() >= 1, "bodies");
   message.Clear();
   Require(messages->FillNext(message), "events follow");
-  if (IsOneIn(4, bytes)) RequireFiniteNumbers(message);
+  RequireNumbers(message);
   double time = 0;
   for (const v1::TraceEvent& event : message.events()) {
     Require(event.event() != v1::TraceEvent::escape, "no ball escapes");

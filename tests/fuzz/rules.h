@@ -1,5 +1,5 @@
-// Properties that several targets share. All functions throw as Require does. Slow checks run for
-// one input in sixteen.
+// Properties that several targets share. Functions named Require... throw std::exception if the
+// property does not hold. Slow checks run for one input in sixteen.
 #pragma once
 
 #include "ballpiston/v1/ensemble.pb.h"
