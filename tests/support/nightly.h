@@ -5,16 +5,22 @@
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
+#include <stdexcept>
 #include <string>
+
+#include "absl/strings/numbers.h"
 
 namespace ballpiston {
 
 inline bool IsNightly() { return std::getenv("BALLPISTON_NIGHTLY") != nullptr; }
 
-// Of a test with variables of its own.
+// Of a test with variables of its own. Throws std::invalid_argument unless it is a whole number.
 inline std::optional<uint64_t> NumberFromEnvironment(const char* name) {
   const char* const text = std::getenv(name);
-  return text == nullptr ? std::nullopt : std::optional<uint64_t>(std::stoull(text));
+  if (text == nullptr) return std::nullopt;
+  uint64_t number = 0;
+  if (absl::SimpleAtoi(text, &number)) return number;
+  throw std::invalid_argument(std::string(name) + " is no whole number: " + text);
 }
 
 }  // namespace ballpiston
