@@ -57,9 +57,9 @@ class Simulation : World {
     End();
   }
 
-  void Await(Machine::SimulatedThread* thread) {
-    if (machine.Join(thread, machine.now() + kPeace)) return;
-    Note(Violation("stuck", "", "a call does not return"));
+  void Await(Machine::SimulatedThread* thread, std::chrono::hours limit = kPeace) {
+    if (machine.Join(thread, machine.now() + limit)) return;
+    Note(Violation("stuck", "", "a call or a stop does not return"));
     machine.GiveUp();
   }
 
@@ -168,8 +168,11 @@ class Simulation : World {
     std::shared_ptr<Life> last = std::exchange(life, nullptr);
     last->is_over = true;
     last->book().Shutdown();
-    while (last.use_count() > 1) machine.Sleep(std::chrono::milliseconds(100));
-    last = nullptr;
+    auto stop = [this, last = std::move(last)]() mutable {
+      while (last.use_count() > 1) machine.Sleep(std::chrono::milliseconds(100));
+      last = nullptr;
+    };
+    Await(machine.Start(std::move(stop)), kLongestStop);
     if (!left_) return;
     disk_ = std::make_unique<FaultDisk>(std::move(left_->disk));
     WriteFile(Computing(), left_->computing);
@@ -259,7 +262,8 @@ class Simulation : World {
       kHang{20};
   static constexpr std::chrono::milliseconds kSlowOperation{20};
   static constexpr uint64_t kMostOperations = 30;
-  static constexpr std::chrono::hours kPeace{6};  // enough for all jobs
+  static constexpr std::chrono::hours kPeace{6};        // enough for all jobs
+  static constexpr std::chrono::hours kLongestStop{1};  // of a server with its last calls
 
   // A store whose jobs are all deleted may use this many bytes more than a new one, because some
   // trees keep a page more. One job of the largest kind takes as many.
