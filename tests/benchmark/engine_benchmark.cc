@@ -11,11 +11,13 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -31,6 +33,7 @@
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_run.h"
 #include "core/gas/hit_rates.h"
+#include "core/gpu/device_orbits.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/direction.h"
 #include "tests/core/one_point_spec.h"
@@ -208,12 +211,51 @@ void AddPair(const ExperimentKind* experiment, double delta) {
   AddRowsOfLanes(name + "/lanes_single", work(Model::kBilliard, Precision::kSingle));
 }
 
-// The samples of several threads that share the processor, by the clock on the wall.
+// The blocks of a point whose flights a GPU computes.
+class BlocksForDevice : public BlockQueue {
+ public:
+  BlocksForDevice(LocalPoint& point, OrbitDevice* device) : point_(point), device_(device) {}
+  std::optional<Block> Next() override { return point_.NextBlock(); }
+  void Done(const Block& block, BlockResult result) override {
+    point_.Add(block, std::move(result));
+  }
+  bool Pause() override { return point_.finished(); }
+  OrbitDevice* device() const override { return device_; }
+
+ private:
+  LocalPoint& point_;
+  OrbitDevice* device_;
+};
+
+Work SamplesOnDevice(int threads) {
+  const auto fail = [](const absl::Status& status) { throw std::runtime_error(status.ToString()); };
+  const auto device = std::make_shared<OrbitsOnDevice>(*OpenCuda(), threads, fail);
+  const Point point = PointExperiment::Create(
+      SpecOf(&kFirstHit, PaperPoint(0.0125, 0.125, 1), {.samples = 1'000'000}, Model::kBilliard),
+      0);
+  return [=](uint64_t) {
+    LocalPoint local(*point, ChunkFold::WindowFor(point->plan(), device->orbits()));
+    BlocksForDevice blocks(local, device.get());
+    const auto run = point->StartRun(blocks);
+    while (!local.finished()) {
+      if (run->Advance()) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+    return static_cast<double>(local.Merged().samples);
+  };
+}
+
+// The samples of several threads that share the processor, and a GPU if there is one, by the clock
+// on the wall.
 void AddThreads() {
   const Work work =
       PairSamples(PairPoint(&kFirstHit, 0.0125, Model::kBilliard, Precision::kDouble));
   const int cores = std::max(static_cast<int>(std::thread::hardware_concurrency()), 1);
   AddRow("first-hit/delta:0.0125/lanes", work)->ThreadRange(1, cores)->UseRealTime();
+  for (int threads = 1; OpenCuda().ok() && threads <= cores; threads *= 2) {
+    AddRow("first-hit/delta:0.0125/device", SamplesOnDevice(threads))
+        ->Threads(threads)
+        ->UseRealTime();
+  }
 }
 
 // ---- experiments with a chain ----

@@ -153,24 +153,20 @@ class Sweep {
 
   bool BeginLeases() {
     bool began = false;
-    while (idle_here_ > 0) {
-      std::optional<Lease> lease = server_.scheduler.Next(server_.local);
-      if (!lease) break;
-      began = true;
-      if (lease->OpensPoints()) {
-        server_.Open(*lease);
-        continue;
+    for (const bool local : {true, false}) {
+      size_t& idle = local ? idle_here_ : idle_elsewhere_;
+      while (idle > 0) {
+        std::optional<Lease> lease = server_.scheduler.Next(local ? server_.local : server_.remote);
+        if (!lease) break;
+        began = true;
+        if (lease->OpensPoints()) {
+          server_.Open(*lease);
+          continue;
+        }
+        --idle;
+        const bool lost = !local && random_() % 100 == 0;
+        Begin({.local = local, .lost = lost, .lease = *std::move(lease)});
       }
-      --idle_here_;
-      Begin({.local = true, .lease = *std::move(lease)});
-    }
-    while (idle_elsewhere_ > 0) {
-      std::optional<Lease> lease = server_.scheduler.Next(server_.remote);
-      if (!lease) break;
-      began = true;
-      --idle_elsewhere_;
-      const bool lost = random_() % 100 == 0;
-      Begin({.lost = lost, .lease = *std::move(lease)});
     }
     return began;
   }

@@ -1,13 +1,17 @@
 #include "tests/fuzz/mutation.h"
 
+#include "absl/strings/escaping.h"
+#include "absl/strings/numbers.h"
+
 namespace ballpiston::fuzz {
 namespace {
 
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::Reflection;
+using google::protobuf::TextFormat;
 
-constexpr int kLongestList = 12;
+constexpr size_t kLongestList = 12;
 
 using Double = std::numeric_limits<double>;
 constexpr double kInf = Double::infinity(), kNan = Double::quiet_NaN();
@@ -59,74 +63,52 @@ int64_t Integer(Dice& dice, int64_t now) {
   }
 }
 
-std::string Text(Dice& dice, std::string now) {
-  if (dice.OneIn(3)) return kWords[dice.Below(kWords.size())];
-  MutateBytes(dice, now);
-  return now;
+// `now` and the result: in quotes, with escapes.
+std::string Text(Dice& dice, const std::string& now) {
+  std::string text;
+  if (dice.OneIn(3)) {
+    text = kWords[dice.Below(kWords.size())];
+  } else {
+    if (!now.empty()) absl::CUnescape(now.substr(1, now.size() - 2), &text);
+    MutateBytes(dice, text);
+  }
+  return absl::StrCat("\"", absl::CEscape(text), "\"");
 }
 
-// ---- one field ----
-
-// Sets the field, or with `adds` adds an element to the list.
-void SetOrAdd(Dice& dice, const FieldDescriptor& field, bool adds, Message& message) {
-  const Reflection& r = *message.GetReflection();
-  Message* const m = &message;
+// A new value of the field, often near the value `now`; both in the text format.
+std::string NewValue(Dice& dice, const FieldDescriptor& field, const std::string& now) {
+  double number;
+  int64_t integer;
+  if (!absl::SimpleAtoi(now, &integer)) integer = 0;
   switch (field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_DOUBLE:
-      return adds ? r.AddDouble(m, &field, Number(dice, 0.55))
-                  : r.SetDouble(m, &field, Number(dice, r.GetDouble(message, &field)));
-    case FieldDescriptor::CPPTYPE_INT64:
-      return adds ? r.AddInt64(m, &field, Integer(dice, 0))
-                  : r.SetInt64(m, &field, Integer(dice, r.GetInt64(message, &field)));
-    case FieldDescriptor::CPPTYPE_UINT64: {
-      const auto number = static_cast<uint64_t>(Integer(dice, 0));
-      return adds ? r.AddUInt64(m, &field, number) : r.SetUInt64(m, &field, number);
-    }
-    case FieldDescriptor::CPPTYPE_INT32: {
-      const auto number =
-          static_cast<int32_t>(Integer(dice, adds ? 0 : r.GetInt32(message, &field)));
-      return adds ? r.AddInt32(m, &field, number) : r.SetInt32(m, &field, number);
-    }
-    case FieldDescriptor::CPPTYPE_ENUM: {
-      const int number = static_cast<int>(dice.Below(9)) - 1;
-      return adds ? r.AddEnumValue(m, &field, number) : r.SetEnumValue(m, &field, number);
-    }
+      if (!absl::SimpleAtod(now, &number)) number = 0.55;
+      return absl::StrFormat("%.17g", Number(dice, number));
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return absl::StrCat(static_cast<int>(dice.Below(9)) - 1);
     case FieldDescriptor::CPPTYPE_BOOL:
-      return adds ? r.AddBool(m, &field, dice.OneIn(2)) : r.SetBool(m, &field, dice.OneIn(2));
+      return dice.OneIn(2) ? "true" : "false";
     case FieldDescriptor::CPPTYPE_STRING:
-      return adds ? r.AddString(m, &field, Text(dice, ""))
-                  : r.SetString(m, &field, Text(dice, r.GetString(message, &field)));
+      return Text(dice, now);
     case FieldDescriptor::CPPTYPE_MESSAGE:
-      return MutateMessage(dice, adds ? *r.AddMessage(m, &field) : *r.MutableMessage(m, &field));
+      return "{}";
+    case FieldDescriptor::CPPTYPE_INT32:
+      return absl::StrCat(static_cast<int32_t>(Integer(dice, integer)));
+    case FieldDescriptor::CPPTYPE_UINT64:
+      return absl::StrCat(static_cast<uint64_t>(Integer(dice, integer)));
     default:
-      return;  // field types that the project does not use
+      return absl::StrCat(Integer(dice, integer));
   }
 }
 
-// Adds, removes, exchanges or changes an element.
-void MutateList(Dice& dice, const FieldDescriptor& field, Message& message) {
+// Takes an element out of the list, and returns it in the text format.
+std::string Taken(const FieldDescriptor& field, int index, Message& message) {
   const Reflection& reflection = *message.GetReflection();
-  const int size = reflection.FieldSize(message, &field);
-  const size_t what = dice.Below(8);
-  const bool adds = what < 2, removes = what == 2, exchanges = what == 3;  // else: changes
-  if (size == 0 || (adds && size < kLongestList)) {
-    return SetOrAdd(dice, field, /*adds=*/true, message);
-  }
-  const int index = static_cast<int>(dice.Below(static_cast<size_t>(size)));
-  if (exchanges) return reflection.SwapElements(&message, &field, index, size - 1);
-  if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE && !removes) {
-    return MutateMessage(dice, *reflection.MutableRepeatedMessage(&message, &field, index));
-  }
-  if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && !removes) {
-    const double now = reflection.GetRepeatedDouble(message, &field, index);
-    return reflection.SetRepeatedDouble(&message, &field, index, Number(dice, now));
-  }
-  // An element of any other type is replaced by a new one.
-  reflection.SwapElements(&message, &field, index, size - 1);
+  std::string taken;
+  TextFormat::PrintFieldValueToString(message, &field, index, &taken);
+  reflection.SwapElements(&message, &field, index, reflection.FieldSize(message, &field) - 1);
   reflection.RemoveLast(&message, &field);
-  if (removes) return;
-  SetOrAdd(dice, field, /*adds=*/true, message);
-  reflection.SwapElements(&message, &field, index, size - 1);
+  return taken;
 }
 
 }  // namespace
@@ -161,15 +143,27 @@ void MutateMessage(Dice& dice, Message& message) {
   if (fields == 0) return;
   const FieldDescriptor& field =
       *message.GetDescriptor()->field(static_cast<int>(dice.Below(static_cast<size_t>(fields))));
-  if (field.is_map()) {
-    if (message.GetReflection()->FieldSize(message, &field) < kLongestList) {
-      SetOrAdd(dice, field, /*adds=*/true, message);
+  const Reflection& reflection = *message.GetReflection();
+  if (dice.OneIn(16)) return reflection.ClearField(&message, &field);
+  const bool has_messages = field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+  std::string now;
+  if (field.is_repeated()) {
+    const auto size = static_cast<size_t>(reflection.FieldSize(message, &field));
+    if (size > 0 && (!dice.OneIn(4) || size == kLongestList)) {
+      const int index = static_cast<int>(dice.Below(size));
+      if (has_messages && !dice.OneIn(4)) {
+        return MutateMessage(dice, *reflection.MutableRepeatedMessage(&message, &field, index));
+      }
+      now = Taken(field, index, message);
+      if (dice.OneIn(4)) return;
     }
-    return;
+  } else if (has_messages) {
+    return MutateMessage(dice, *reflection.MutableMessage(&message, &field));
+  } else {
+    TextFormat::PrintFieldValueToString(message, &field, -1, &now);
   }
-  if (dice.OneIn(16)) return message.GetReflection()->ClearField(&message, &field);
-  if (field.is_repeated()) return MutateList(dice, field, message);
-  SetOrAdd(dice, field, /*adds=*/false, message);
+  // A value that the field cannot have changes nothing.
+  TextFormat::Parser().ParseFieldValueFromString(NewValue(dice, field, now), &field, &message);
 }
 
 bool MutateFields(Dice& dice, const Message& kind, std::string& bytes) {

@@ -51,7 +51,7 @@ void CheckListJobsRequest(const v1::ListEnsembleJobsRequest& request, const std:
   server::RequestCheck check;
   const server::JobFilter filter = check.Filter(request);
   if (!check.ok()) {
-    RequireNamed(check.violations(), "");
+    RequireNamed(check.violations());
     return RequireSendable(check.status(), bytes);
   }
   for (const int state : request.states()) {
@@ -72,7 +72,7 @@ void CheckJobRequest(const v1::CancelEnsembleJobRequest& request, const std::str
   const std::string id = check.JobId("name", request.name());
   const std::string request_id = check.RequestId(request.request_id());
   if (!check.ok()) {
-    RequireNamed(check.violations(), "");
+    RequireNamed(check.violations());
     return RequireSendable(check.status(), bytes);
   }
   Require(!id.empty() && server::JobIdOf(server::JobName(id)) == id, "a job has an id");
@@ -139,32 +139,10 @@ void CheckPairsRequest(const v1::EvaluatePairsRequest& request, const std::strin
   }
 }
 
-void RequireBody(double x, double y, double vx, double vy, double energy) {
-  Require(std::isfinite(x) && std::isfinite(y), "a position");
-  Require(std::isfinite(vx) && std::isfinite(vy), "a velocity");
-  Require(std::isfinite(energy) && energy >= 0, "an energy");
-}
-
-void RequireStart(const v1::TraceStart& start) {
-  Require(start.eta() >= 0 && start.tip() > 0, "a geometry");
-  Require(start.balls_size() >= 1 && start.pistons_size() >= 1, "bodies");
-  for (const auto& body : start.balls()) {
-    RequireBody(body.x(), body.y(), body.vx(), body.vy(), body.energy());
-  }
-  for (const auto& body : start.pistons()) {
-    RequireBody(body.x(), body.y(), body.vx(), body.vy(), body.energy());
-  }
-}
-
-void RequireEvent(const v1::TraceEvent& event) {
-  Require(event.has_ball() || event.has_piston(), "a body takes part");
-  if (event.has_ball()) {
-    RequireBody(event.ball_x(), event.ball_y(), event.ball_vx(), event.ball_vy(),
-                event.ball_energy());
-  }
-  if (event.has_piston()) {
-    RequireBody(event.piston_x(), event.piston_y(), event.piston_vx(), event.piston_vy(),
-                event.piston_energy());
+void RequireNumbers(const v1::TraceOrbitResponse& message) {
+  const std::string text = message.ShortDebugString();
+  for (const char* other : {": nan", ": -nan", ": inf", ": -inf", "energy: -"}) {
+    Require(!absl::StrContains(text, other), "every number is finite, no energy negative");
   }
 }
 
@@ -174,15 +152,19 @@ void CheckTraceRequest(const v1::TraceOrbitRequest& request, const std::string& 
   if (!messages.ok()) return RequireSendable(messages.status(), bytes);
   v1::TraceOrbitResponse message;
   messages->FillNext(message);
-  RequireStart(message.start());
+  RequireNumbers(message);
+  const v1::TraceStart& start = message.start();
+  Require(start.eta() >= 0 && start.tip() > 0, "a geometry");
+  Require(start.balls_size() >= 1 && start.pistons_size() >= 1, "bodies");
   message.Clear();
   Require(messages->FillNext(message), "events follow");
+  RequireNumbers(message);
   double time = 0;
   for (const v1::TraceEvent& event : message.events()) {
     Require(event.event() != v1::TraceEvent::escape, "no ball escapes");
     Require(event.time() >= time && std::isfinite(event.time()), "time goes on");
+    Require(event.has_ball() || event.has_piston(), "a body takes part");
     time = event.time();
-    RequireEvent(event);
   }
 }
 

@@ -1,5 +1,5 @@
-// Properties that several targets share. All functions throw as Require does. Slow checks run for
-// one input in sixteen.
+// Properties that several targets share. Functions named Require... throw std::exception if the
+// property does not hold. Slow checks run for one input in sixteen.
 #pragma once
 
 #include "ballpiston/v1/ensemble.pb.h"
@@ -12,6 +12,7 @@
 #include "server/convert/spec.h"
 #include "server/rpc/request_check.h"
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/questions/checks.h"
 #include "tests/server/spec_message.h"
 
 namespace ballpiston::fuzz {
@@ -64,17 +65,16 @@ inline void RequireSendable(const absl::Status& error, const std::string& input)
   Require(!received.message().empty(), "the client has words");
 }
 
-// Each violation names a field that begins with `prefix`, and has a description.
-inline void RequireNamed(const std::vector<FieldViolation>& violations, const std::string& prefix) {
+// Each violation has a field and a description.
+inline void RequireNamed(const std::vector<FieldViolation>& violations) {
   for (const FieldViolation& violation : violations) {
-    Require(absl::StartsWith(violation.field, prefix), "a violation names its field");
-    Require(!violation.description.empty(), "a violation says something");
+    Require(!violation.field.empty() && !violation.description.empty(), "a violation is described");
   }
 }
 
 // An accepted specification has points with valid pairs, and converts to the core's form and to
-// bytes and back without a change. A rejected one has named violations that can be sent. True if it
-// was accepted.
+// bytes and back without a change. A rejected one has violations that can be sent and that name the
+// field, the value and what is permitted. True if it was accepted.
 inline bool RequireJudged(const v1::EnsembleSpec& spec, const std::string& input) {
   if (HasManyPoints(spec.grid()) && !IsOneIn(kOneIn, input)) return false;
   const server::CheckedSpec checked = server::CheckSpec(spec);
@@ -83,7 +83,7 @@ inline bool RequireJudged(const v1::EnsembleSpec& spec, const std::string& input
     if (IsOneIn(kOneIn, input)) RequireSameAfterConversion(checked.spec);
     return true;
   }
-  RequireNamed(checked.violations, "spec");
+  questions::CheckRefusal(spec, checked.violations);
   RequireSendable(server::InvalidSpec(checked.violations), input);
   return false;
 }

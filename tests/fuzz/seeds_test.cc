@@ -4,9 +4,13 @@
 #include <ostream>
 
 #include "absl/strings/escaping.h"
+#include "ballpiston/storage/tokens.pb.h"
+#include "ballpiston/v1/ensemble.pb.h"
 #include "google/protobuf/stubs/logging.h"
+#include "server/convert/spec.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/mutation.h"
+#include "tests/support/message_text.h"
 
 namespace ballpiston::fuzz {
 
@@ -62,6 +66,25 @@ TEST(Seeds, AFileThatCannotBeReadIsAnError) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder.File("text/a_folder"));
   EXPECT_THROW(SeedsOf({"text", nullptr}, folder.path()), std::runtime_error);
+}
+
+TEST(Seeds, WhatMustBeRefusedIs) {
+  const auto request = FromText<v1::CreateEnsembleJobRequest>(
+      Contents(kSeeds + "/create_request/refused.textproto"));
+  EXPECT_THAT(server::CheckSpec(request.spec()).violations, SizeIs(16));
+}
+
+TEST(Mutation, DrawsNumbersAndTextsOfEveryKind) {
+  Dice dice(1);
+  bool is_large = false, has_nul = false, has_line = false;
+  storage::ResumeToken token;
+  for (int i = 0; i < 10'000; ++i) {
+    MutateMessage(dice, token);
+    is_large |= token.change() > INT64_MAX;
+    has_nul |= absl::StrContains(token.job(), '\0');
+    has_line |= absl::StrContains(token.job(), '\n');
+  }
+  EXPECT_TRUE(is_large && has_nul && has_line);
 }
 
 INSTANTIATE_TEST_SUITE_P(Fuzz, EveryTarget, testing::ValuesIn(Targets()),

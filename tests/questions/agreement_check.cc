@@ -1,6 +1,6 @@
 #include "core/ensemble/experiment_kind.h"
 #include "tests/questions/checks.h"
-#include "tests/questions/engine.h"
+#include "tests/questions/questions.h"
 
 namespace ballpiston::questions {
 namespace {
@@ -17,19 +17,20 @@ const v1::Estimate* Find(const v1::PointResult& answer, const std::string& name)
   return nullptr;
 }
 
+using Differences = std::map<std::string, std::string>;  // as Disagreements returns
+
 void Compare(const std::string& what, double value, double other, double permitted,
-             Findings& findings) {
+             Differences& found) {
   const double difference = std::fabs(value - other);
   permitted += kRounding * std::max(std::fabs(value), std::fabs(other));
   if (difference <= permitted) return;
-  findings.push_back(
-      {"agreement", absl::StrFormat("%s: %.9g and %.9g differ by %.3g, permitted %.3g", what, value,
-                                    other, difference, permitted)});
+  found[what] = absl::StrFormat("%.9g and %.9g differ by %.3g, permitted %.3g", value, other,
+                                difference, permitted);
 }
 
 // Model errors are known for the first estimate, or are 0. The mean of a distance between laws
 // depends on the number of samples, and so does its part above the noise floor.
-void CompareModels(const v1::PointResult& a, const v1::PointResult& b, Findings& findings) {
+void CompareModels(const v1::PointResult& a, const v1::PointResult& b, Differences& found) {
   for (const v1::Estimate& of_a : a.estimates()) {
     const v1::Estimate* const of_b = Find(b, of_a.name());
     if (of_b == nullptr || !of_a.has_standard_error() || !of_b->has_standard_error()) continue;
@@ -40,18 +41,18 @@ void CompareModels(const v1::PointResult& a, const v1::PointResult& b, Findings&
             of_a.value(), of_b->value(),
             kSigmas * std::hypot(of_a.standard_error(), of_b->standard_error()) +
                 of_a.model_error() + of_b->model_error(),
-            findings);
+            found);
   }
 }
 
 // The exact value is that of the model itself, but of the billiard in double precision.
-void CompareWithExact(const v1::PointResult& answer, Findings& findings) {
+void CompareWithExact(const v1::PointResult& answer, Differences& found) {
   for (const v1::Estimate& estimate : answer.estimates()) {
     if (!estimate.has_exact() || !estimate.has_standard_error()) continue;
     Compare(absl::StrCat(estimate.name(), " by ", v1::EnsembleSpec::Model_Name(answer.model()),
                          " and its exact value"),
             estimate.value(), estimate.exact(),
-            kSigmas * estimate.standard_error() + estimate.model_error(), findings);
+            kSigmas * estimate.standard_error() + estimate.model_error(), found);
   }
 }
 
@@ -76,39 +77,31 @@ std::vector<v1::PointResult> Answers(const EnsembleSpec& question, uint64_t roun
     const auto spec = ByModel(question, model, round, machine, seconds);
     if (!spec) continue;
     const Answer answer = ChooseAnswer(*spec, PointAt(*spec, 0), machine);
-    v1::PointResult result = ComputePoint(*spec, 0, answer).result;
+    v1::PointResult result = ComputePoint(*spec, 0, answer);
     const bool is_enough = !TakesSamples(model) || result.samples() >= kEnoughSamples;
     if (is_enough) answers.push_back(std::move(result));
   }
   return answers;
 }
 
-// What is compared, without the numbers.
-std::string Subject(const Finding& finding) {
-  return finding.what.substr(0, finding.what.find(':'));
-}
-
 }  // namespace
 
-Findings Disagreements(const std::vector<v1::PointResult>& answers) {
-  Findings findings;
+Differences Disagreements(const std::vector<v1::PointResult>& answers) {
+  Differences found;
   for (size_t i = 0; i < answers.size(); ++i) {
-    CompareWithExact(answers[i], findings);
-    for (size_t j = i + 1; j < answers.size(); ++j) CompareModels(answers[i], answers[j], findings);
+    CompareWithExact(answers[i], found);
+    for (size_t j = i + 1; j < answers.size(); ++j) CompareModels(answers[i], answers[j], found);
   }
-  return findings;
+  return found;
 }
 
-Findings CheckAgreement(const EnsembleSpec& spec, const Machine& machine, double most_seconds) {
-  const Findings first = Disagreements(Answers(spec, 0, machine, most_seconds));
-  if (first.empty()) return {};
-  std::set<std::string> subjects;
-  for (const Finding& finding : first) subjects.insert(Subject(finding));
-  Findings confirmed;
-  for (Finding& finding : Disagreements(Answers(spec, 1, machine, 4 * most_seconds))) {
-    if (subjects.contains(Subject(finding))) confirmed.push_back(std::move(finding));
+void CheckAgreement(const EnsembleSpec& spec, const Machine& machine, double most_seconds) {
+  const Differences first = Disagreements(Answers(spec, 0, machine, most_seconds));
+  if (first.empty()) return;
+  for (const auto& [what, difference] :
+       Disagreements(Answers(spec, 1, machine, 4 * most_seconds))) {
+    Require(!first.contains(what), "agreement", what, ": ", difference);
   }
-  return confirmed;
 }
 
 }  // namespace ballpiston::questions

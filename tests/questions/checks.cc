@@ -44,116 +44,83 @@ bool IsExact(const v1::PointResult& result, const v1::Estimate& estimate) {
          HasOneColumn(point.cells());
 }
 
-void CheckErrors(const v1::PointResult& result, Findings& findings) {
+void CheckErrors(const v1::PointResult& result) {
   if (result.model() == v1::EnsembleSpec::CLOSED_FORM) return;
   for (const v1::Estimate& estimate : result.estimates()) {
     if (!estimate.has_standard_error() || IsExact(result, estimate)) continue;
     const double rounding =
         std::numeric_limits<double>::epsilon() / 2 * std::fabs(estimate.value());
-    if (estimate.standard_error() <= 0 || estimate.standard_error() < rounding) {
-      findings.push_back(
-          {"false zero",
-           absl::StrCat(estimate.name(), " is ", estimate.value(), " +- ",
-                        estimate.standard_error(), " from ", result.samples(), " samples by ",
-                        v1::EnsembleSpec::Model_Name(result.model()))});
-    }
+    Require(estimate.standard_error() > 0 && estimate.standard_error() >= rounding, "false zero",
+            estimate.name(), " is ", estimate.value(), " +- ", estimate.standard_error(), " from ",
+            result.samples(), " samples by ", v1::EnsembleSpec::Model_Name(result.model()));
   }
 }
 
-void CheckMeasured(const v1::PointResult& result, Findings& findings) {
-  if (result.estimates().empty()) {
-    findings.push_back({"measured", "no estimate"});
-    return;
-  }
+void CheckMeasured(const v1::PointResult& result) {
+  Require(!result.estimates().empty(), "measured", "no estimate");
   if (!TakesSamples(result.model()) || !result.remarks().empty()) return;
-  if (result.samples() < 1) {
-    findings.push_back({"measured", "0 samples, and no remark"});
-  } else if (result.samples() >= kEnoughSamples && !result.estimates(0).has_standard_error()) {
-    findings.push_back(
-        {"measured", absl::StrCat(result.estimates(0).name(), " has from ", result.samples(),
-                                  " samples no error, and no remark")});
-  }
+  Require(result.samples() >= 1, "measured", "0 samples, and no remark");
+  const v1::Estimate& first = result.estimates(0);
+  Require(result.samples() < kEnoughSamples || first.has_standard_error(), "measured", first.name(),
+          " has from ", result.samples(), " samples no error, and no remark");
 }
 
-void CheckHealth(const v1::EnsembleSpec& spec, const v1::PointResult& result, Findings& findings) {
+void CheckHealth(const v1::EnsembleSpec& spec, const v1::PointResult& result) {
   const double most = spec.precision() == v1::EnsembleSpec::SINGLE ? 1e-4 : 1e-9;
-  if (result.health().escapes() == 0 && result.health().max_energy_error() <= most) return;
-  findings.push_back({"health", result.health().ShortDebugString()});
+  Require(result.health().escapes() == 0 && result.health().max_energy_error() <= most, "health",
+          result.health().ShortDebugString());
 }
 
-void CheckLaws(const v1::PointResult& result, Findings& findings) {
-  double both_signs = 0;
+// The histograms of both signs of a velocity are one law.
+void CheckLaws(const v1::PointResult& result) {
+  std::map<std::string, double> sums;  // by law
   for (const v1::Histogram& histogram : result.histograms()) {
-    if (histogram.expected_probabilities().empty()) continue;
-    double sum = std::accumulate(histogram.expected_probabilities().begin(),
-                                 histogram.expected_probabilities().end(), 0.0);
-    if (histogram.sigma() != 0) {
-      both_signs += sum;
-      continue;
-    }
-    if (!(std::fabs(sum - 1) <= kLawTolerance)) {
-      findings.push_back({"law", absl::StrCat("the probabilities of ", histogram.name(),
-                                              " sum to 1 + ", sum - 1)});
-    }
+    const auto& expected = histogram.expected_probabilities();
+    if (expected.empty()) continue;
+    sums[histogram.sigma() == 0 ? absl::StrCat(histogram.name(), " at ", histogram.time())
+                                : "both signs"] +=
+        std::accumulate(expected.begin(), expected.end(), 0.0);
   }
-  if (both_signs != 0 && !(std::fabs(both_signs - 1) <= kLawTolerance)) {
-    findings.push_back(
-        {"law", absl::StrCat("the probabilities of alpha sum to 1 + ", both_signs - 1)});
+  for (const auto& [law, sum] : sums) {
+    Require(std::fabs(sum - 1) <= kLawTolerance, "law", "the probabilities of ", law,
+            " sum to 1 + ", sum - 1);
   }
 }
 
 // ---- finite numbers ----
 
-void Check(const std::string& name, std::initializer_list<std::optional<double>> values,
-           Findings& findings) {
+void Check(const std::string& name, std::initializer_list<std::optional<double>> values) {
   for (const std::optional<double>& value : values) {
-    if (value && !std::isfinite(*value)) {
-      findings.push_back({"finite", absl::StrCat("a number of ", name, " is ", *value)});
-    }
+    if (value) Require(std::isfinite(*value), "finite", "a number of ", name, " is ", *value);
   }
 }
 
 }  // namespace
 
-Findings CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result) {
-  Findings findings = CheckFinite(result);
-  CheckErrors(result, findings);
-  CheckMeasured(result, findings);
-  CheckHealth(spec, result, findings);
-  CheckLaws(result, findings);
-  return findings;
+void CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result) {
+  CheckFinite(result);
+  CheckErrors(result);
+  CheckMeasured(result);
+  CheckHealth(spec, result);
+  CheckLaws(result);
 }
 
-const v1::ModelPlan* Chosen(const v1::PointPlan& plan) {
+double CheckPlan(const v1::PointPlan& plan) {
+  CheckFinite(plan);
+  const v1::ModelPlan* chosen = nullptr;
   for (const v1::ModelPlan& model : plan.models()) {
-    if (model.model() == plan.model() && model.answers()) return &model;
+    Require(model.samples() >= 0 && model.work() >= 0 && model.relative_statistical_error() >= 0 &&
+                model.relative_model_error() >= 0,
+            "plan", "a number is negative: ", model.ShortDebugString());
+    if (model.model() == plan.model() && model.answers()) chosen = &model;
   }
-  return nullptr;
-}
-
-Findings CheckPlan(const v1::PointPlan& plan) {
-  Findings findings = CheckFinite(plan);
-  const auto add = [&](const auto&... what) {
-    findings.push_back({"plan", absl::StrCat(what...)});
-  };
-  for (const v1::ModelPlan& model : plan.models()) {
-    if (model.samples() < 0 || model.work() < 0 || model.relative_statistical_error() < 0 ||
-        model.relative_model_error() < 0) {
-      add("a number is negative: ", model.ShortDebugString());
-    }
-  }
-  const v1::ModelPlan* const chosen = Chosen(plan);
-  if (chosen == nullptr) {
-    add("no model answers");
-    return findings;
-  }
-  if (!chosen->has_samples() || (TakesSamples(chosen->model()) && chosen->samples() < 1)) {
-    add("no samples are planned: ", chosen->ShortDebugString());
-  }
-  if (!chosen->has_work() || chosen->work() > kMostPlannedSeconds) {
-    add("no machine can compute what is planned: ", chosen->ShortDebugString());
-  }
-  return findings;
+  Require(chosen != nullptr, "plan", "no model answers");
+  const bool has_samples = chosen->samples() >= 1 || !TakesSamples(chosen->model());
+  Require(chosen->has_samples() && has_samples, "plan",
+          "no samples are planned: ", chosen->ShortDebugString());
+  Require(chosen->has_work() && chosen->work() <= kMostPlannedSeconds, "plan",
+          "no machine can compute what is planned: ", chosen->ShortDebugString());
+  return chosen->work();
 }
 
 PeakMemory::PeakMemory() : at_first_(BytesOf("VmRSS:")) {
@@ -162,47 +129,38 @@ PeakMemory::PeakMemory() : at_first_(BytesOf("VmRSS:")) {
 
 double PeakMemory::Bytes() const { return BytesOf("VmHWM:") - at_first_; }
 
-Findings CheckMemory(double planned, double measured) {
-  if (kIsSanitized || measured <= planned + kMemoryOfAnyAnswer) return {};
-  return {{"memory",
-           absl::StrFormat("planned %.0f MB, took %.0f MB", 1e-6 * planned, 1e-6 * measured)}};
+void CheckMemory(double planned, double measured) {
+  Require(kIsSanitized || measured <= planned + kMemoryOfAnyAnswer, "memory", "planned ",
+          1e-6 * planned, " MB, took ", 1e-6 * measured, " MB");
 }
 
-Findings CheckFinite(const google::protobuf::Message& message) {
-  Findings findings;
+void CheckFinite(const google::protobuf::Message& message) {
   for (const absl::string_view line : absl::StrSplit(message.DebugString(), '\n')) {
-    if (absl::EndsWith(line, " nan") || absl::EndsWith(line, "inf")) {
-      findings.push_back({"finite", std::string(absl::StripLeadingAsciiWhitespace(line))});
-    }
+    Require(!absl::EndsWith(line, " nan") && !absl::EndsWith(line, "inf"), "finite",
+            absl::StripLeadingAsciiWhitespace(line));
   }
-  return findings;
 }
 
-Findings CheckFinite(const PointSummary& summary) {
-  Findings findings;
+void CheckFinite(const PointSummary& summary) {
   // A small sample may contain nothing that determines a value.
   const bool is_small = !HasStatedError(static_cast<double>(summary.samples));
   for (const Estimate& estimate : summary.estimates) {
     if (is_small && std::isnan(estimate.value)) continue;
-    Check(estimate.name,
-          {estimate.value, estimate.standard_error, estimate.exact, estimate.limit,
-           estimate.noise_floor},
-          findings);
+    Check(estimate.name, {estimate.value, estimate.standard_error, estimate.exact, estimate.limit,
+                          estimate.noise_floor});
   }
   for (const Curve& curve : summary.curves) {
     for (const CurvePoint& point : curve.points) {
-      Check(curve.name, {point.at, point.value, point.standard_error, point.limit}, findings);
+      Check(curve.name, {point.at, point.value, point.standard_error, point.limit});
     }
   }
   if (const auto& kl = summary.kl_divergence) {
-    Check("relative entropy", {kl->value, kl->noise_floor, kl->noise_error, kl->standard_error},
-          findings);
+    Check("relative entropy", {kl->value, kl->noise_floor, kl->noise_error, kl->standard_error});
   }
   for (const auto& [name, sigma, histogram, time] : summary.histograms) {
-    Check(name, {histogram.lower, histogram.upper, time}, findings);
+    Check(name, {histogram.lower, histogram.upper, time});
   }
-  Check("health", {summary.health.max_energy_error}, findings);
-  return findings;
+  Check("health", {summary.health.max_energy_error});
 }
 
 }  // namespace ballpiston::questions

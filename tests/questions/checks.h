@@ -1,4 +1,4 @@
-// The outcome of a question, and the rules that hold for its answer. README.md lists the rules.
+// The rules that hold for the answer to a question. README.md lists them. A check throws Violation.
 #pragma once
 
 #include "ballpiston/v1/ensemble.pb.h"
@@ -13,24 +13,17 @@ namespace ballpiston::questions {
 // start a new server.
 inline constexpr char kEndCheck[] = "end", kCallCheck[] = "call";
 
-struct Finding {
+struct Violation : std::runtime_error {
+  Violation(const std::string& check, const std::string& what)
+      : std::runtime_error(what), check(check) {}
+
   std::string check;  // the name of the broken rule
-  std::string what;
 };
 
-using Findings = std::vector<Finding>;
-
-struct Report {
-  std::string outcome;  // answered, refused, stopped, ...
-  Findings findings = {};
-
-  bool Breaks(const std::string& check) const {
-    return std::any_of(findings.begin(), findings.end(),
-                       [&](const Finding& finding) { return finding.check == check; });
-  }
-  void Add(const Findings& more) { findings.insert(findings.end(), more.begin(), more.end()); }
-  void Add(const std::string& check, const std::string& what) { findings.push_back({check, what}); }
-};
+template <typename... What>
+void Require(bool is_so, const char* check, const What&... what) {
+  if (!is_so) throw Violation(check, absl::StrCat(what...));
+}
 
 // A question that was planned at 0.1 s or less, and takes more processor time than this, is
 // reported as one that never ends.
@@ -42,15 +35,12 @@ inline constexpr int kMostProcessorSeconds = 30;
 
 // A refusal must name the field, the value that the question had, and the permitted values.
 // `violations`: those of `spec`, with paths that begin with "spec.".
-Findings CheckRefusal(const v1::EnsembleSpec& spec, const std::vector<FieldViolation>& violations);
+void CheckRefusal(const v1::EnsembleSpec& spec, const std::vector<FieldViolation>& violations);
 
 // The plan of a point, by all models. The model that would answer has a number of samples and a
 // time of thirty thousand years of a processor at most: a question that takes longer has to be
-// refused. No number of any model is negative, NaN or infinite.
-Findings CheckPlan(const v1::PointPlan& plan);
-
-// The row of the model that would answer; null if there is none.
-const v1::ModelPlan* Chosen(const v1::PointPlan& plan);
+// refused. No number of any model is negative, NaN or infinite. Returns the planned processor time.
+double CheckPlan(const v1::PointPlan& plan);
 
 // ---- memory: a computation takes at most what was planned (core/ensemble/experiment_kind.h) ----
 
@@ -69,20 +59,20 @@ class PeakMemory {
 };
 
 // Under a sanitizer, which takes memory of its own, every measured value passes.
-Findings CheckMemory(double planned, double measured);
+void CheckMemory(double planned, double measured);
 
 // ---- the answer at each point ----
 
-Findings CheckFinite(const google::protobuf::Message& message);
+void CheckFinite(const google::protobuf::Message& message);
 
 // The same for a summary, which still has the numbers that the server leaves out of a message.
-Findings CheckFinite(const PointSummary& summary);
+void CheckFinite(const PointSummary& summary);
 
 // With at least so many samples a result needs an error, or a remark that says why there is none.
 inline constexpr double kEnoughSamples = 1000;
 
 // finite, false zero, measured, health and law.
-Findings CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result);
+void CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result);
 
 // ---- agreement: all models that answer a question agree within their stated errors ----
 //
@@ -98,9 +88,9 @@ Findings CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result
 // deviation, 20,000 questions with 20 comparisons each give a false alarm in 250 runs.
 
 // At the first point of the question. `most_seconds`: for each model, on `machine`.
-Findings CheckAgreement(const EnsembleSpec& spec, const Machine& machine, double most_seconds);
+void CheckAgreement(const EnsembleSpec& spec, const Machine& machine, double most_seconds);
 
-// The comparisons alone, of one answer by each model.
-Findings Disagreements(const std::vector<v1::PointResult>& answers);
+// The comparisons alone, of one answer by each model: the numbers that differ, by what they are.
+std::map<std::string, std::string> Disagreements(const std::vector<v1::PointResult>& answers);
 
 }  // namespace ballpiston::questions

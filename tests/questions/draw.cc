@@ -1,6 +1,3 @@
-#include <google/protobuf/descriptor.h>
-#include <google/protobuf/text_format.h>
-
 #include "client/output/json.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/parameter.h"
@@ -8,24 +5,19 @@
 #include "core/gas/gas_shape.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/temperature.h"
-#include "core/sampling/counter_random.h"
 #include "server/convert/spec.h"
 #include "tests/core/model_choice/questions.h"
-#include "tests/questions/engine.h"
-#include "tests/questions/question.h"
+#include "tests/questions/questions.h"
+#include "tests/support/dice.h"
 
 namespace ballpiston::questions {
 namespace {
 
-// The same choices on every machine.
-class Dice {
+class Dice : public ballpiston::Dice {
  public:
-  Dice(uint64_t seed, uint64_t number) : random_(seed, 0, number) {}
+  Dice(uint64_t seed, uint64_t number)
+      : ballpiston::Dice(seed * 0xbf58476d1ce4e5b9 + number * 0x94d049bb133111eb) {}
 
-  uint64_t Bits() { return random_.Bits(); }
-  double Uniform() { return random_.Uniform(); }
-  bool Chance(double probability) { return Uniform() < probability; }
-  size_t Below(size_t n) { return static_cast<size_t>(Uniform() * static_cast<double>(n)); }
   double Between(double lower, double upper) { return lower + (upper - lower) * Uniform(); }
   double LogBetween(double lower, double upper) {
     return std::exp(Between(std::log(lower), std::log(upper)));
@@ -34,9 +26,6 @@ class Dice {
   T Pick(const std::vector<T>& list) {
     return list[Below(list.size())];
   }
-
- private:
-  CounterRandom random_;
 };
 
 // The neighbours of x among the doubles.
@@ -115,69 +104,7 @@ double Cold(Dice& dice, double hot, bool extreme) {
   return std::max(hot * std::pow(10, -dice.Between(0, most)), kMinTemperature);
 }
 
-// ---- defects ----
-
-// Makes the first value of the parameter one that lies outside of its domain. The ends of each
-// domain, to the last bit, are in tests/core/ensemble/ensemble_spec_test.cc and
-// tests/core/geometry/pair_geometry_test.cc.
-void SetValueOutside(Dice& dice, const Parameter& parameter, double bound_of_delta,
-                     v1::Grid& grid) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (&parameter == &kCells) {
-    grid.set_cells(0, dice.Pick<std::string>({"0", "0x4", "1000001", "1001x1000", "2.5", ""}));
-    return;
-  }
-  const auto* list = grid.GetDescriptor()->FindFieldByName(std::string(parameter.name));
-  const google::protobuf::Reflection& reflection = *grid.GetReflection();
-  if (reflection.FieldSize(grid, list) == 0) reflection.AddDouble(&grid, list, 0);
-  const bool is_just_outside = &parameter == &kDelta && dice.Chance(0.3);
-  const double outside = is_just_outside
-                             ? bound_of_delta * (1 + 3 * kDeltaSlack)
-                             : dice.Pick<double>({-1, -kInfinity, kInfinity, 1e300, NAN});
-  reflection.SetRepeatedDouble(&grid, list, 0, outside);
-}
-
-// Changes the question into one that the service has to refuse, and returns why.
-std::string AddDefect(Dice& dice, const Parameter& parameter, double bound_of_delta,
-                      v1::EnsembleSpec& spec) {
-  using Texts = std::vector<std::string>;
-  static const std::pair<const char*, Texts> kDefects[] = {
-      {"the number of samples is outside",
-       {"target { samples: 0 }", "target { samples: -1 }",
-        absl::StrCat("target { samples: ", kMaxSamples + 1, " }")}},
-      {"the tolerance is outside",
-       {"target { tolerance: 0 }", "target { tolerance: -0.01 }", "target { tolerance: 1 }",
-        "target { tolerance: 1.5 }", "target { tolerance: nan }"}},
-      {"a count and a budget", {"target { samples: 64 budget { seconds: 1 } }"}},
-      {"verify is set with a model", {"model: BILLIARD verify: true"}},
-      {"the experiment is not known", {"experiment: 99"}},
-      {"the estimate is not known", {"target { estimate: 'heat' }"}}};
-  v1::Grid& grid = *spec.mutable_grid();
-  const size_t which = dice.Below(16);
-  if (which < std::size(kDefects)) {
-    const auto& [reason, texts] = kDefects[which];
-    google::protobuf::TextFormat::Parser().MergeFromString(dice.Pick(texts), &spec);
-    return reason;
-  }
-  if (which == 6) {
-    grid.clear_rho();
-    return "a list is missing";
-  }
-  if (which == 7) {
-    constexpr int kEach = 317;  // its square is above kMaxPoints
-    for (int i = 1; i < kEach; ++i) {
-      grid.add_rho(grid.rho(0));
-      grid.add_delta(grid.delta(0));
-    }
-    return "the grid has too many points";
-  }
-  SetValueOutside(dice, parameter, bound_of_delta, grid);
-  return absl::StrCat("a value of ", parameter.name, " is outside");
-}
-
 // ---- questions ----
-
-constexpr double kShareWithDefect = 1.0 / 7;
 
 class Drawing {
  public:
@@ -186,7 +113,7 @@ class Drawing {
         most_seconds_(most_seconds),
         experiment_(*AllExperiments()[dice_.Below(AllExperiments().size())]) {}
 
-  Question Draw() {
+  v1::EnsembleSpec Draw() {
     spec_.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(experiment_.number));
     if (dice_.Chance(0.8)) spec_.set_seed(dice_.Bits());
     for (const ParameterUse& use : experiment_.parameters) {
@@ -194,13 +121,7 @@ class Drawing {
     }
     SetMethod();
     SetTarget();
-    Question question = {spec_};
-    if (dice_.Chance(kShareWithDefect)) {
-      const auto& uses = experiment_.parameters;
-      const Parameter& parameter = *uses[dice_.Below(uses.size())].parameter;
-      question.defect = AddDefect(dice_, parameter, bound_, question.spec);
-    }
-    return question;
+    return spec_;
   }
 
  private:
@@ -322,16 +243,11 @@ class Drawing {
 
 }  // namespace
 
-double BudgetSeconds(const v1::Target& target) {
-  constexpr int64_t kNanos = 1'000'000'000;
-  return static_cast<double>(target.budget().seconds() * kNanos + target.budget().nanos()) / kNanos;
-}
-
 std::string Command(const v1::EnsembleSpec& spec) {
   return absl::StrCat("ballpiston run --spec - <<<'", client::Json(spec), "'");
 }
 
-Question Draw(uint64_t seed, uint64_t number, double most_seconds) {
+v1::EnsembleSpec Draw(uint64_t seed, uint64_t number, double most_seconds) {
   return Drawing(seed, number, most_seconds).Draw();
 }
 

@@ -1,12 +1,9 @@
-#include "tests/questions/engine.h"
-
 #include <sys/prctl.h>
 #include <sys/wait.h>
 
 #include <cerrno>
 #include <cstring>
 
-#include "absl/strings/str_replace.h"
 #include "core/ensemble/block_run.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_fold.h"
@@ -15,98 +12,13 @@
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "tests/core/model_choice/questions.h"
+#include "tests/questions/questions.h"
 
 namespace ballpiston::questions {
 namespace {
 
 // A grid has at most this many points that are planned and computed.
 constexpr size_t kMostPoints = 27;
-
-class Asking {
- public:
-  Asking(const Question& question, double most_seconds)
-      : question_(question), most_seconds_(most_seconds) {}
-
-  Report Ask() {
-    if (IsRefused()) return std::move(report_);
-    if (Plan() <= most_seconds_) {
-      Answer();
-    } else {
-      Stop();
-    }
-    report_.Add(CheckAgreement(spec_, SomeMachine(), most_seconds_));
-    return std::move(report_);
-  }
-
- private:
-  bool IsRefused() {
-    const server::CheckedSpec checked = server::CheckSpec(question_.spec);
-    spec_ = checked.spec;
-    report_.Add(CheckRefusal(question_.spec, checked.violations));
-    if (checked.violations.empty() && !question_.defect.empty()) {
-      report_.Add("refusal", "is not refused, although " + question_.defect);
-    }
-    if (!checked.violations.empty()) {
-      report_.outcome = "refused";
-      return true;
-    }
-    std::vector<FieldViolation> here = MachineViolations(spec_, SomeMachine());
-    if (here.empty()) return false;
-    for (FieldViolation& violation : here) violation.field.insert(0, "spec.");
-    report_.Add(CheckRefusal(question_.spec, here));
-    report_.outcome = "refused here";
-    return true;
-  }
-
-  // The planned processor time.
-  double Plan() {
-    double work = 0;
-    for (size_t i = 0; i < std::min(PointCount(spec_), kMostPoints); ++i) {
-      const PointParameters point = PointAt(spec_, i);
-      ladders_.push_back(LadderFor(spec_, point, SomeMachine()));
-      const v1::PointPlan plan = server::PointPlanMessage(point, ladders_.back());
-      report_.Add(CheckPlan(plan));
-      const v1::ModelPlan* const chosen = Chosen(plan);
-      work += chosen == nullptr ? 0 : chosen->work();
-    }
-    return work;
-  }
-
-  // A budget becomes the number of samples that it is planned to give.
-  EnsembleSpec SpecOfPoint(size_t i) const {
-    if (!spec_.target.budget_seconds) return spec_;
-    return WithSamples(spec_, ladders_[i].Chosen().samples.value_or(1));
-  }
-
-  double PlannedMemory(size_t i) const {
-    const PointParameters point = PointAt(spec_, i);
-    return MemoryOf(OnePointSpec(spec_, point, ladders_[i].answer.model), point, 1);
-  }
-
-  void Answer() {
-    report_.outcome = "answered";
-    for (size_t i = 0; i < ladders_.size(); ++i) {
-      const PeakMemory peak;
-      ComputedPoint computed = ComputePoint(SpecOfPoint(i), i, ladders_[i].answer);
-      report_.Add(CheckMemory(PlannedMemory(i), peak.Bytes()));
-      report_.Add(std::move(computed.findings));
-      report_.Add(CheckAnswer(question_.spec, computed.result));
-    }
-  }
-
-  void Stop() {
-    report_.outcome = "stopped";
-    const PeakMemory peak;
-    StartAndStop(SpecOfPoint(0), 0, ladders_[0].answer);
-    report_.Add(CheckMemory(PlannedMemory(0), peak.Bytes()));
-  }
-
-  const Question& question_;
-  const double most_seconds_;
-  EnsembleSpec spec_;
-  std::vector<Ladder> ladders_;
-  Report report_;
-};
 
 // Hands out all blocks, and asks for a pause at once.
 class ImpatientQueue : public BlockQueue {
@@ -128,37 +40,49 @@ class ImpatientQueue : public BlockQueue {
   std::stop_source stop_;
 };
 
+// Starts the computation and stops it where the engine first asks whether to stop.
+void StartAndStop(const EnsembleSpec& spec, size_t index, const Answer& answer) {
+  const auto point = PointExperiment::Create(spec, index, answer);
+  LocalPoint local(*point);
+  ImpatientQueue queue(local);
+  // A point without samples has no run.
+  if (const auto run = point->StartRun(queue)) run->Advance();
+}
+
+void AnswerPoint(const v1::EnsembleSpec& question, EnsembleSpec spec, size_t index,
+                 const Ladder& ladder, bool is_short) {
+  const PointParameters point = PointAt(spec, index);
+  const double planned = MemoryOf(OnePointSpec(spec, point, ladder.answer.model), point, 1);
+  // A budget becomes the number of samples that it is planned to give.
+  if (spec.target.budget_seconds) spec = WithSamples(spec, ladder.Chosen().samples.value_or(1));
+  const PeakMemory peak;
+  v1::PointResult result;
+  if (is_short) {
+    result = ComputePoint(spec, index, ladder.answer);
+  } else {
+    StartAndStop(spec, index, ladder.answer);
+  }
+  CheckMemory(planned, peak.Bytes());
+  if (is_short) CheckAnswer(question, result);
+}
+
 // ---- child processes ----
 
-// A report as lines: the outcome, then check and text of each finding.
-std::string Text(const Report& report) {
-  std::string text = report.outcome;
-  for (const Finding& finding : report.findings) {
-    absl::StrAppend(&text, "\n", finding.check, "\n",
-                    absl::StrReplaceAll(finding.what, {{"\n", " "}}));
-  }
-  return text;
-}
-
-Report ReportFromText(const std::string& text) {
-  const std::vector<std::string> lines = absl::StrSplit(text, '\n');
-  Report report = {.outcome = lines[0]};
-  for (size_t i = 1; i + 1 < lines.size(); i += 2) {
-    report.findings.push_back({lines[i], lines[i + 1]});
-  }
-  return report;
-}
-
-[[noreturn]] void SendReport(const std::function<Report()>& ask, const std::string& file) {
+// The file has the outcome; or the broken rule, and in the next lines what is wrong.
+[[noreturn]] void Report(const std::function<std::string()>& ask, const std::string& file) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const rlimit limit = {kMostProcessorSeconds, kMostProcessorSeconds + 1}, no_core = {0, 0};
   setrlimit(RLIMIT_CPU, &limit);
   setrlimit(RLIMIT_CORE, &no_core);
-  WriteFile(file, Text(ask()));
+  try {
+    WriteFile(file, ask());
+  } catch (const Violation& broken) {
+    WriteFile(file, absl::StrCat(broken.check, "\n", broken.what()));
+  }
   _exit(EXIT_SUCCESS);
 }
 
-Finding Death(int status) {
+Violation Death(int status) {
   if (status == 0) return {"crash", "no report"};
   if (!WIFSIGNALED(status)) return {"crash", absl::StrCat("exit code ", WEXITSTATUS(status))};
   if (WTERMSIG(status) != SIGXCPU) {
@@ -169,20 +93,12 @@ Finding Death(int status) {
 
 }  // namespace
 
-ComputedPoint ComputePoint(const EnsembleSpec& spec, size_t index, const Answer& answer) {
+v1::PointResult ComputePoint(const EnsembleSpec& spec, size_t index, const Answer& answer) {
   const auto point = PointExperiment::Create(spec, index, answer);
   const PointSummary summary = point->Summarize(FoldPoint(*point));
-  return {server::WithDetails(server::ResultOf(index, *point, summary), server::DetailsOf(summary),
-                              *spec.experiment),
-          CheckFinite(summary)};
-}
-
-void StartAndStop(const EnsembleSpec& spec, size_t index, const Answer& answer) {
-  const auto point = PointExperiment::Create(spec, index, answer);
-  LocalPoint local(*point);
-  ImpatientQueue queue(local);
-  // A point without samples has no run.
-  if (const auto run = point->StartRun(queue)) run->Advance();
+  CheckFinite(summary);
+  return server::WithDetails(server::ResultOf(index, *point, summary), server::DetailsOf(summary),
+                             *spec.experiment);
 }
 
 double SamplesIn(double seconds, const EnsembleSpec& spec, size_t index, Model model,
@@ -201,24 +117,41 @@ EnsembleSpec WithSamples(EnsembleSpec spec, double samples) {
   return spec;
 }
 
-Report AskEngine(const Question& question, double most_seconds) {
-  return Asking(question, most_seconds).Ask();
+std::string AskEngine(const v1::EnsembleSpec& question, double most_seconds) {
+  server::CheckedSpec checked = server::CheckSpec(question);
+  const EnsembleSpec& spec = checked.spec;
+  if (checked.violations.empty()) {
+    server::AddViolations(MachineViolations(spec, SomeMachine()), checked);
+  }
+  CheckRefusal(question, checked.violations);
+  if (!checked.violations.empty()) return "refused";
+  std::vector<Ladder> ladders;
+  double work = 0;
+  for (size_t i = 0; i < std::min(PointCount(spec), kMostPoints); ++i) {
+    const PointParameters point = PointAt(spec, i);
+    ladders.push_back(LadderFor(spec, point, SomeMachine()));
+    work += CheckPlan(server::PointPlanMessage(point, ladders.back()));
+  }
+  const bool is_short = work <= most_seconds;
+  if (!is_short) ladders.resize(1);
+  for (size_t i = 0; i < ladders.size(); ++i) AnswerPoint(question, spec, i, ladders[i], is_short);
+  CheckAgreement(spec, SomeMachine(), most_seconds);
+  return is_short ? "answered" : "stopped";
 }
 
-Report InChild(const std::function<Report()>& ask) {
+std::string InChild(const std::function<std::string()>& ask) {
   const TemporaryFolder folder;
   const std::string file = folder.File("report");
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error(std::strerror(errno));
-  if (child == 0) SendReport(ask, file);
+  if (child == 0) Report(ask, file);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  Report report = ReportFromText(Contents(file));
-  if (status != 0 || report.outcome.empty()) {
-    report.outcome = "died";
-    report.findings.push_back(Death(status));
-  }
+  const std::string report = Contents(file);
+  if (status != 0 || report.empty()) throw Death(status);
+  const std::vector<std::string> parts = absl::StrSplit(report, absl::MaxSplits('\n', 1));
+  if (parts.size() > 1) throw Violation(parts[0], parts[1]);
   return report;
 }
 

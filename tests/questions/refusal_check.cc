@@ -7,7 +7,6 @@
 #include "core/ensemble/experiment_kind.h"
 #include "server/convert/spec.h"
 #include "tests/questions/checks.h"
-#include "tests/questions/question.h"
 
 namespace ballpiston::questions {
 namespace {
@@ -15,14 +14,17 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using Texts = std::vector<std::string>;
 
+constexpr size_t kLongestText = 100;  // a longer one is cut
+
 // The texts of a list's values.
 Texts TextsOfList(const v1::Grid& grid, const FieldDescriptor& list) {
   const google::protobuf::Reflection& reflection = *grid.GetReflection();
   Texts texts;
   for (int i = 0; i < reflection.FieldSize(grid, &list); ++i) {
-    texts.push_back(list.type() == FieldDescriptor::TYPE_STRING
-                        ? absl::CEscape(reflection.GetRepeatedString(grid, &list, i))
-                        : NumberText(reflection.GetRepeatedDouble(grid, &list, i)));
+    texts.push_back(
+        list.type() == FieldDescriptor::TYPE_STRING
+            ? absl::CEscape(reflection.GetRepeatedString(grid, &list, i).substr(0, kLongestText))
+            : NumberText(reflection.GetRepeatedDouble(grid, &list, i)));
   }
   return texts;
 }
@@ -44,6 +46,8 @@ Texts TextsOfGridField(const v1::Grid& grid, absl::string_view path) {
 Texts TextsOf(const v1::EnsembleSpec& spec, absl::string_view field) {
   if (absl::ConsumePrefix(&field, "grid.")) return TextsOfGridField(spec.grid(), field);
   const v1::Target& target = spec.target();
+  const double budget =
+      static_cast<double>(target.budget().seconds()) + target.budget().nanos() / 1e9;
   const std::map<absl::string_view, Texts> others = {
       {"grid", {"points"}},
       {"experiment", {absl::StrCat(int{spec.experiment()}), "is missing"}},
@@ -54,8 +58,9 @@ Texts TextsOf(const v1::EnsembleSpec& spec, absl::string_view field) {
       {"target.samples", {absl::StrCat(target.samples()), "by default"}},
       {"target.collisions", {absl::StrCat(target.collisions())}},
       {"target.tolerance", {NumberText(target.tolerance())}},
-      {"target.estimate", {absl::CEscape(target.estimate())}},
-      {"target.budget", {NumberText(BudgetSeconds(target)), "is set together"}}};
+      {"target.estimate", {absl::CEscape(target.estimate().substr(0, kLongestText))}},
+      {"target.budget", {NumberText(budget), "is set together"}},
+      {"target.budget.nanos", {absl::StrCat(target.budget().nanos())}}};
   const auto found = others.find(field);
   return found == others.end() ? Texts() : found->second;
 }
@@ -77,26 +82,21 @@ bool NamesAValueOfTheGrid(const v1::Grid& grid, absl::string_view description) {
 
 }  // namespace
 
-Findings CheckRefusal(const v1::EnsembleSpec& spec, const std::vector<FieldViolation>& violations) {
-  Findings findings;
-  for (const FieldViolation& violation : violations) {
-    const std::string& description = violation.description;
-    absl::string_view field = violation.field;
+void CheckRefusal(const v1::EnsembleSpec& spec, const std::vector<FieldViolation>& violations) {
+  for (const auto& [path, description] : violations) {
+    absl::string_view field = path;
+    const bool is_unknown = absl::StartsWith(description, "unknown field number");
+    if (is_unknown && absl::StartsWith(field, "spec")) continue;  // of a newer client
     const Texts texts = absl::ConsumePrefix(&field, "spec.") ? TextsOf(spec, field) : Texts();
-    const auto add_unless = [&](bool is_so, const char* what) {
-      if (is_so) return;
-      findings.push_back({"refusal", absl::StrCat(what, ": ", violation.field, " ", description)});
+    const auto require = [&](bool is_so, const char* what) {
+      Require(is_so, "refusal", what, ": ", path, " ", description);
     };
-    if (texts.empty()) {
-      add_unless(false, "names no field");
-      continue;
-    }
-    add_unless(HasOneOf(description, texts) || NamesAValueOfTheGrid(spec.grid(), description),
-               "does not show the value");
-    add_unless(HasOneOf(description, {"permitted", "needs", "does not use", "use ", "is it older"}),
-               "does not say what is permitted");
+    require(!texts.empty(), "names no field");
+    require(HasOneOf(description, texts) || NamesAValueOfTheGrid(spec.grid(), description),
+            "does not show the value");
+    require(HasOneOf(description, {"permitted", "needs", "does not use", "use ", "is it older"}),
+            "does not say what is permitted");
   }
-  return findings;
 }
 
 }  // namespace ballpiston::questions

@@ -24,11 +24,8 @@ class Counter {
   explicit Counter(bool mended) : mended_(mended) {}
 
   void CountOne() {
-    if (!mended_) {
-      ++count_;
-      return;
-    }
-    std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_, std::defer_lock);
+    if (mended_) lock.lock();
     ++count_;
   }
 

@@ -71,7 +71,7 @@ class Client {
         call->book(), {.snapshot = std::chrono::milliseconds(200), .heartbeat = kHeartbeat},
         call->name, request, reader);
     if (absl::IsCancelled(status) || !call.Succeeds(status)) return;
-    if (!chain.has_ended) throw Violation("watch", id, "ended before the job");
+    Require(chain.has_ended, "watch", id, "ended before the job");
   }
 
  private:
@@ -114,10 +114,9 @@ class Client {
       if (status.ok()) return true;
       const bool is_refused = absl::IsUnavailable(status) || absl::IsResourceExhausted(status);
       const bool may_be_refused = began_in_trouble_ || troubles_ != world_.troubles;
-      if (is_refused && may_be_refused) return false;
-      if (is_refused) {
-        throw Violation("refused", "", absl::StrCat(verb_, " ", id, ": ", status.ToString()));
-      }
+      Require(!is_refused || may_be_refused, "refused", "", verb_, " ", id, ": ",
+              status.ToString());
+      if (is_refused) return false;
       if (absl::IsNotFound(status) && !id.empty()) {
         world_.expectations.Missed(id);
       } else if (absl::IsFailedPrecondition(status) && if_precondition_fails) {
@@ -156,7 +155,7 @@ class Client {
     bool Write(const v1::WatchEnsembleJobResponse& message) override {
       world_.machine.Sleep(world_.machine.UpTo(kLongestRead));
       if (call_->is_over || world_.machine.Chance(kLeaves)) return false;
-      if (chain_.has_ended) throw Violation("watch", call_.id, "a message after the end");
+      Require(!chain_.has_ended, "watch", call_.id, "a message after the end");
       chain_.token = message.resume_token();
       for (const v1::PointResult& point : message.snapshot().finished_points()) {
         world_.Tell(absl::StrCat("watch ", call_.id, ": point ", point.index()));
@@ -176,11 +175,9 @@ class Client {
    private:
     // The progress that one watch sends never goes back.
     void Progressed(const v1::JobProgress& now) {
-      if (now.points_done() < progress_.points_done() || now.samples() < progress_.samples()) {
-        throw Violation(
-            "progress", call_.id,
-            absl::StrCat(now.ShortDebugString(), " after ", progress_.ShortDebugString()));
-      }
+      Require(now.points_done() >= progress_.points_done() && now.samples() >= progress_.samples(),
+              "progress", call_.id, now.ShortDebugString(), " after ",
+              progress_.ShortDebugString());
       progress_ = now;
     }
 

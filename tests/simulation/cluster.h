@@ -6,8 +6,6 @@
 
 #include "server/cluster/folder_executor.h"
 #include "server/compute/scheduler.h"
-#include "server/convert/compressed.h"
-#include "server/convert/fold_record.h"
 #include "server/host.h"
 #include "server/worker/worker.h"
 #include "tests/server/factory_opener.h"
@@ -128,25 +126,15 @@ class SimulatedCluster {
     return machine_.Chance(0.002) ? EndOfWork::kAfterChunk : EndOfWork::kNotYet;
   }
 
-  // With a toy experiment: its spec has the point, and the question's seed and target.
+  // With a toy experiment.
   absl::StatusOr<LeaseFile> ReadLease(absl::string_view& bytes, std::function<void()> crash) const {
-    const absl::StatusOr<std::string> plain = TakeCompressed(bytes, kMaxSharedFile);
-    if (!plain.ok()) return plain.status();
-    storage::Lease record;
-    if (!record.ParseFromString(*plain)) return absl::DataLossError("not a lease");
-    const storage::Question& question = record.question();
-    EnsembleSpec spec = FakeSpec(static_cast<int>(record.point()) + 1, 1, question.seed());
-    spec.target = {.estimate = question.estimate()};
-    if (question.has_samples()) spec.target.samples = question.samples();
-    if (question.has_collisions()) spec.target.collisions = question.collisions();
-    if (question.has_tolerance()) spec.target.tolerance = question.tolerance();
-    Lease lease = {.run = record.job(), .generation = record.generation()};
-    lease.point = static_cast<size_t>(record.point());
-    lease.spec = std::make_shared<const EnsembleSpec>(spec);
+    absl::StatusOr<LeaseFile> file = TakeLease(bytes);
+    if (!file.ok()) return file;
+    Lease& lease = file->lease;
+    EnsembleSpec spec = FakeSpec(static_cast<int>(lease.point) + 1, 1, lease.spec->seed);
+    spec.target = lease.spec->target;
     lease.experiment = ToyExperiments(machine_, std::move(crash))(spec, lease.point);
-    lease.start = {record.first_chunk(), record.blocks(), ResultOfAccumulators(record.partial())};
-    lease.end = record.end_chunk();
-    return LeaseFile{record.server(), lease, record.touch_seconds()};
+    return file;
   }
 
   Machine& machine_;

@@ -52,20 +52,19 @@ inline v1::EnsembleSpec SpecOf(const Question& question) {
   return spec;
 }
 
-class Violation : public std::runtime_error {
- public:
-  // `check` names the promise. `job`: empty if the promise is not about one job.
-  Violation(std::string check, std::string job, const std::string& what)
-      : std::runtime_error(check + ": " + job + " " + what),
-        check_(std::move(check)),
-        job_(std::move(job)) {}
+struct Violation : std::runtime_error {
+  Violation(const std::string& check, const std::string& job, const std::string& what)
+      : std::runtime_error(check + ": " + job + " " + what), check(check), job(job) {}
 
-  const std::string& check() const { return check_; }
-  const std::string& job() const { return job_; }
-
- private:
-  std::string check_, job_;
+  std::string check;  // names the promise
+  std::string job;    // empty if the promise is not about one job
 };
+
+// `job`: as above. `what` says what is wrong.
+template <typename... What>
+void Require(bool is_so, const char* check, const std::string& job, const What&... what) {
+  if (!is_so) throw Violation(check, job, absl::StrCat(what...));
+}
 
 // The facts that answers gave about a job. States are ordered as in v1::EnsembleJob::State.
 struct KnownJob {
@@ -98,32 +97,27 @@ class Expectations {
   void Named(const KnownJobs& before, const Question& question, const v1::EnsembleJob& job) {
     const std::string id = *JobIdOf(job.name());
     const auto [known, is_new] = jobs_.try_emplace(id, KnownJob{.question = question});
-    if (known->second.question.seed != question.seed) {
-      throw Violation("another question", id, absl::StrCat("answers the question ", question.seed));
-    }
+    Require(known->second.question.seed == question.seed, "another question", id,
+            "answers the question ", question.seed);
     Got(KnownIn(before, id), job);
     CheckOnlyJob(id, known->second);
   }
 
   void Got(const KnownJob& before, const v1::EnsembleJob& job) {
     const std::string id = *JobIdOf(job.name());
-    if (before.is_deleted) throw Violation("deleted", id, "exists again");
+    Require(!before.is_deleted, "deleted", id, "exists again");
     Saw(id, before, job.state());
-    if (job.progress().points_done() < before.points_done) {
-      throw Violation(
-          "progress", id,
-          absl::StrCat(job.progress().points_done(), " points after ", before.points_done));
-    }
-    if (before.is_cancelled && job.state() < v1::EnsembleJob::CANCELLING) {
-      throw Violation("cancelled", id, absl::StrCat(Text(job.state()), " after its cancellation"));
-    }
+    Require(job.progress().points_done() >= before.points_done, "progress", id,
+            job.progress().points_done(), " points after ", before.points_done);
+    Require(!before.is_cancelled || job.state() >= v1::EnsembleJob::CANCELLING, "cancelled", id,
+            Text(job.state()), " after its cancellation");
     NoteState(id, job);
   }
 
   // The job was not found, or was not in the list. A violation, unless a deletion was requested and
   // has taken effect without an answer.
   void Missed(const std::string& id) {
-    if (Known(id).deletions_asked == 0) throw Violation("lost", id, "is not found");
+    Require(Known(id).deletions_asked > 0, "lost", id, "is not found");
     jobs_.at(id).is_deleted = true;
   }
 
@@ -140,16 +134,15 @@ class Expectations {
   // Refused because the job has not ended.
   void DeletionRefused(const std::string& id, const KnownJob& before) {
     --jobs_.at(id).deletions_asked;
-    if (HasEnded(before.state) || before.has_ended) {
-      throw Violation("states", id, "is called active after its end");
-    }
+    Require(!HasEnded(before.state) && !before.has_ended, "states", id,
+            "is called active after its end");
   }
 
   void Listed(const KnownJobs& before, const std::vector<v1::EnsembleJob>& jobs) {
     std::set<std::string> found;
     for (const v1::EnsembleJob& job : jobs) {
       const std::string id = *JobIdOf(job.name());
-      if (!found.insert(id).second) throw Violation("list", id, "is in the list twice");
+      Require(found.insert(id).second, "list", id, "is in the list twice");
       Named(before, QuestionOf(job.spec().seed()), job);
     }
     for (const auto& [id, known] : before) {
@@ -160,23 +153,18 @@ class Expectations {
   // An answer or a watch message has this state.
   void Saw(const std::string& id, const KnownJob& before, State state) const {
     const bool is_older = state < before.state || (HasEnded(before.state) && state != before.state);
-    if (is_older) {
-      throw Violation("states", id, absl::StrCat(Text(state), " after ", Text(before.state)));
-    }
-    if (before.has_ended && !HasEnded(state)) {
-      throw Violation("states", id, Text(state) + " after a refusal that said that it has ended");
-    }
+    Require(!is_older, "states", id, Text(state), " after ", Text(before.state));
+    Require(!before.has_ended || HasEnded(state), "states", id, Text(state),
+            " after a refusal that said that it has ended");
   }
 
   // `results`: all that the job had when it was read.
   void Read(const std::string& id, const KnownJob& before,
             const std::vector<v1::PointResult>& results) {
-    if (before.is_deleted) throw Violation("deleted", id, "has results again");
+    Require(!before.is_deleted, "deleted", id, "has results again");
     const int points = CountPoints("results", id, results);
-    if (points < before.points_done) {
-      throw Violation("results", id,
-                      absl::StrCat("has ", points, " results after ", before.points_done));
-    }
+    Require(points >= before.points_done, "results", id, "has ", points, " results after ",
+            before.points_done);
   }
 
   // The finished points that a watch and the watches that it resumes have sent, and the last state.
@@ -186,21 +174,17 @@ class Expectations {
     KnownJob& known = jobs_.at(id);
     known.state = std::max(known.state, state);
     known.points_done = std::max(known.points_done, told);
-    if (state == v1::EnsembleJob::SUCCEEDED && told != known.question.points) {
-      throw Violation("watch", id,
-                      absl::StrCat(told, " of ", known.question.points, " points were sent"));
-    }
+    Require(state != v1::EnsembleJob::SUCCEEDED || told == known.question.points, "watch", id, told,
+            " of ", known.question.points, " points were sent");
   }
 
   // For the last phase, in which nothing fails.
   void ExpectAllEnded() const {
     for (const auto& [id, job] : jobs_) {
-      if (!job.is_deleted && !HasEnded(job.state)) {
-        throw Violation("end", id, absl::StrCat("does not end: ", Text(job.state)));
-      }
-      if (job.is_cancelled && job.state != v1::EnsembleJob::CANCELLED && !job.is_deleted) {
-        throw Violation("cancelled", id, absl::StrCat("ended as ", Text(job.state)));
-      }
+      if (job.is_deleted) continue;
+      Require(HasEnded(job.state), "end", id, "does not end: ", Text(job.state));
+      Require(!job.is_cancelled || job.state == v1::EnsembleJob::CANCELLED, "cancelled", id,
+              "ended as ", Text(job.state));
     }
   }
 
@@ -218,9 +202,8 @@ class Expectations {
     if (!job.question.has_key || job.deletions_asked > 0) return;
     for (const auto& [other, known] : jobs_) {
       const bool is_of_key = known.question.seed == job.question.seed;
-      if (other != id && is_of_key && known.deletions_asked == 0) {
-        throw Violation("second job", id, "and " + other);
-      }
+      Require(other == id || !is_of_key || known.deletions_asked > 0, "second job", id, "and ",
+              other);
     }
   }
 
@@ -230,22 +213,19 @@ class Expectations {
     known.state = std::max(known.state, job.state());
     known.points_done = std::max(known.points_done, job.progress().points_done());
     const bool may_fail = question.crashes && ReasonOf(job.error()) == "ENGINE_CRASHED";
-    if (job.state() == v1::EnsembleJob::FAILED && !may_fail) {
-      throw Violation("failed", id, job.error().message());
-    }
-    if (job.state() == v1::EnsembleJob::CANCELLED && known.cancels_asked == 0) {
-      throw Violation("cancelled", id, "is cancelled, which nobody asked for");
-    }
+    Require(job.state() != v1::EnsembleJob::FAILED || may_fail, "failed", id,
+            job.error().message());
+    Require(job.state() != v1::EnsembleJob::CANCELLED || known.cancels_asked > 0, "cancelled", id,
+            "is cancelled, which nobody asked for");
     double all = 0;
     for (int point = 0; point < question.points; ++point) {
       all += static_cast<double>(Undisturbed(question, point).samples());
     }
     const double samples = job.progress().samples();
-    if (samples > all) throw Violation("samples", id, absl::StrCat(samples, " of ", all));
+    Require(samples <= all, "samples", id, samples, " of ", all);
     if (job.state() != v1::EnsembleJob::SUCCEEDED) return;
-    if (samples != all || job.progress().points_done() != question.points) {
-      throw Violation("samples", id, absl::StrCat("has succeeded with ", samples, " of ", all));
-    }
+    Require(samples == all && job.progress().points_done() == question.points, "samples", id,
+            "has succeeded with ", samples, " of ", all);
   }
 
   // Checks that each result has the bytes of an undisturbed run and that no point comes twice.
@@ -260,7 +240,7 @@ class Expectations {
       if (BytesOf(result) != BytesOf(expected)) {
         throw Violation("bytes", id, point + " has other bytes: " + result.ShortDebugString());
       }
-      if (!points.insert(result.index()).second) throw Violation(check, id, point + " comes twice");
+      Require(points.insert(result.index()).second, check, id, point, " comes twice");
     }
     return static_cast<int>(points.size());
   }

@@ -1,18 +1,19 @@
-// A simulated machine: its own time, and threads that run one at a time, all within one thread of
-// the system. One seed determines which thread runs next, and therefore everything.
+// A simulated machine: its own time, and threads of which one runs at a time. One seed determines
+// which thread runs next, and therefore everything.
 //
 // machine.cc defines what server/host.h and server/mutex.h declare, in place of server/host.cc. A
 // thread runs until it waits: for a lock, a condition, a time, or another thread. Before it takes a
 // lock another thread may run. Time passes only while all threads wait.
 #pragma once
 
-#include <ucontext.h>
+#include <semaphore>
 
+#include "tests/support/dice.h"
 #include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 
-class Machine {
+class Machine : public Dice {
  public:
   using Clock = std::chrono::steady_clock;
 
@@ -28,11 +29,11 @@ class Machine {
 
   // ---- for the threads ----
 
-  struct Fiber;  // a thread
+  struct SimulatedThread;
 
-  Fiber* Start(std::function<void()> run);
+  SimulatedThread* Start(std::function<void()> run);
   // False: the time `until` has come, and the thread goes on.
-  bool Join(Fiber* fiber, Clock::time_point until = Clock::time_point::max());
+  bool Join(SimulatedThread* thread, Clock::time_point until = Clock::time_point::max());
   // Ends Run, whatever the other threads do. They never run again.
   void GiveUp();
   void Yield() { Switch(); }
@@ -40,18 +41,11 @@ class Machine {
   // Waits for a notification with the same `what`; only the address is compared. False: the time
   // `until` has come.
   bool Await(const void* what, std::optional<Clock::time_point> until = std::nullopt);
-  void NotifyOne(const void* what);
+  bool NotifyOne(const void* what);  // false: none waited
   void NotifyAll(const void* what);
 
   Clock::time_point now() const { return now_; }
-  void*& pointer_of_thread();
 
-  // ---- chance ----
-
-  uint64_t Bits() { return random_(); }
-  uint64_t Below(uint64_t end) { return random_() % end; }
-  double Uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }  // from [0, 1)
-  bool Chance(double probability) { return Uniform() < probability; }
   // A random time up to `most`. Short times are more frequent.
   Clock::duration UpTo(Clock::duration most) {
     const double share = Uniform();
@@ -61,17 +55,15 @@ class Machine {
   uint64_t switches() const { return switches_; }  // from thread to thread
 
  private:
-  static void Enter();
   void Switch();  // to a thread that is ready, or back to Run if all have ended
-  Fiber* Choose();
+  SimulatedThread* Choose();
   bool PassTime();
 
-  std::mt19937_64 random_;
   Clock::time_point now_;
   uint64_t switches_ = 0;
-  std::vector<std::unique_ptr<Fiber>> fibers_;
-  Fiber* running_ = nullptr;
-  ucontext_t outside_ = {};
+  std::vector<std::unique_ptr<SimulatedThread>> threads_;
+  SimulatedThread* running_ = nullptr;
+  std::binary_semaphore outside_{0};  // the turn of Run
   bool is_stuck_ = false;
 };
 

@@ -77,10 +77,10 @@ class World {
   // The first violation ends the simulation.
   void Note(const Violation& violation) {
     if (finding) return;
-    finding = {.check = violation.check(), .what = violation.what(), .story = {}};
+    finding = {.check = violation.check, .what = violation.what(), .story = {}};
     std::vector<std::string>& story = finding->story;
     for (const auto& [line, is_general] : story_) {
-      if (is_general || absl::StrContains(line, violation.job())) story.push_back(line);
+      if (is_general || absl::StrContains(line, violation.job)) story.push_back(line);
     }
     story.erase(story.begin(), story.end() - std::min(std::ssize(story), kStoryLines));
   }

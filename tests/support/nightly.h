@@ -2,10 +2,25 @@
 // test-long`, part of `make nightly`).
 #pragma once
 
+#include <cstdint>
 #include <cstdlib>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "absl/strings/numbers.h"
 
 namespace ballpiston {
 
 inline bool IsNightly() { return std::getenv("BALLPISTON_NIGHTLY") != nullptr; }
+
+// Of a test with variables of its own. Throws std::invalid_argument unless it is a whole number.
+inline std::optional<uint64_t> NumberFromEnvironment(const char* name) {
+  const char* const text = std::getenv(name);
+  if (text == nullptr) return std::nullopt;
+  uint64_t number = 0;
+  if (absl::SimpleAtoi(text, &number)) return number;
+  throw std::invalid_argument(std::string(name) + " is no whole number: " + text);
+}
 
 }  // namespace ballpiston

@@ -101,6 +101,8 @@ TEST(EnsembleSpec, TargetsAreChecked) {
       {"first-hit samples=1"},
       {"first-hit samples=1e12"},
       {"first-hit samples=1e13", {"target.samples: permitted: 1 to 1000000000000"}},
+      {"first-hit samples=-1", {"target.samples: is -1; permitted: 1 to"}},
+      {"first-hit collisions=-1", {"target.collisions: is -1; permitted: 1 to"}},
       {"gas-conduction delta=1e-10 collisions=1e6 model=billiard",
        {"target.collisions: is 1000000, but a sample has"}},
       {"energy-relaxation samples=10 budget=1", {"target.budget: alone, or with a tolerance"}},
@@ -111,6 +113,7 @@ TEST(EnsembleSpec, TargetsAreChecked) {
       {"energy-relaxation budget=nan", {"target.budget: 0 < budget <= 1"}},
       {"first-hit tolerance=1", {"target.tolerance: 0 < tolerance < 1"}},
       {"first-hit tolerance=nan", {"target.tolerance: 0 < tolerance < 1"}},
+      {"first-hit tolerance=-0.01", {"target.tolerance: is -0.01; permitted: 0 < tolerance < 1"}},
   });
   EnsembleSpec longest = OnePointOf(&kEnergyRelaxation);
   longest.target = {.budget_seconds = kMaxBudgetSeconds};

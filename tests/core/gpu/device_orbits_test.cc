@@ -1,6 +1,6 @@
 // The flights of a device, computed by a processor here, give the bits of the lanes, also if the
-// device fails. tests/benchmark/gpu_benchmark.cc compares a GPU with the
-// processor, also in whole experiments.
+// device fails. tests/server/compute/thread_executor_test.cc compares whole experiments, on a GPU
+// if there is one.
 #include "core/gpu/device_orbits.h"
 
 #include "tests/core/billiard/each_target.h"

@@ -8,6 +8,7 @@
 #include "tests/core/one_point_spec.h"
 #include "tests/server/compute/stepped_scheduler.h"
 #include "tests/server/preamble.h"
+#include "tests/support/nightly.h"
 
 namespace ballpiston::server {
 namespace {
@@ -88,6 +89,31 @@ TEST(ThreadExecutor, AJobOnADeviceHasTheSameBitsAlsoIfTheDeviceFails) {
                           [&](const absl::Status&) { ++failures; });
     EXPECT_TRUE(ResultOf(spec, &device) == expected);
     EXPECT_EQ(failures, faults.make || faults.land ? 1 : 0);
+  }
+}
+
+// The device is a GPU in a build with CUDA, which BALLPISTON_NIGHTLY keeps busy.
+TEST(ThreadExecutor, EveryExperimentWithAPairHasTheSameBitsOnADevice) {
+  if (!LanesAreFused()) GTEST_SKIP();
+  auto cuda = OpenCuda();
+  const double events = !cuda.ok() ? 1e4 : IsNightly() ? 2e9 : 1e7;
+  const int workers = cuda.ok() ? static_cast<int>(std::thread::hardware_concurrency()) : 2;
+  OrbitsOnDevice device(cuda.ok() ? *std::move(cuda) : std::make_unique<HostDevice>(64), workers,
+                        [](const absl::Status& status) { ADD_FAILURE() << status; });
+  for (const double rho : {0.501, kPaperRho, 0.7}) {
+    for (const double share : {0.9, 0.3, 0.05}) {
+      for (const ExperimentKind* kind : {&kEquilibrium, &kConditionalMeanFreeTime, &kFirstHit,
+                                         &kMarkovProperty, &kEnergyRelaxation}) {
+        PointParameters point = {{kRho, rho}, {kDelta, share * PairDeltaBound(rho)}};
+        if (kind == &kFirstHit || kind == &kConditionalMeanFreeTime) point.Set(kEpsilon, 0.125);
+        if (kind == &kFirstHit) point.Set(kExponent, 1);
+        EnsembleSpec spec = SpecOf(kind, point, {.samples = 100}, Model::kBilliard, 5);
+        const ChunkPlan plan = PointExperiment::Create(spec, 0)->plan();
+        spec.target.samples = static_cast<int64_t>(1 + events / plan.events_per_sample());
+        SCOPED_TRACE(absl::StrCat(kind->name, ", rho ", rho, ", delta ", *point.Find(kDelta)));
+        EXPECT_TRUE(ResultOf(spec, &device, workers) == ResultOf(spec, nullptr, workers));
+      }
+    }
   }
 }
 
