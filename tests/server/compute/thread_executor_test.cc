@@ -1,8 +1,10 @@
 #include "server/compute/thread_executor.h"
 
 #include <latch>
+#include <new>
 
 #include "core/gpu/device_orbits.h"
+#include "server/processor_time.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/gpu/host_flights.h"
 #include "tests/core/one_point_spec.h"
@@ -17,13 +19,9 @@ JournalPointer Ran(const ExperimentFactory& factory, const EnsembleSpec& spec, i
                    OrbitDevice* device = nullptr,
                    const std::shared_ptr<CrashRecord>& record = std::make_shared<CrashRecord>(),
                    JournalPointer journal = std::make_shared<RecordingJournal>()) {
-  FactoryOpener opener(factory);
-  Scheduler scheduler(opener, workers);
-  ThreadExecutor threads(scheduler, workers, kInfinity, record, device);
-  scheduler.Add(RunOf(1, spec, journal));
-  threads.Start();
-  EXPECT_OK(journal->AwaitEnd());
-  scheduler.Shutdown();
+  ThreadPool pool(workers, factory, record, device);
+  pool.scheduler().Add(RunOf(1, spec, journal));
+  journal->AwaitEnd();
   return journal;
 }
 
@@ -31,6 +29,32 @@ BlockResult ResultOf(const EnsembleSpec& spec, OrbitDevice* device, int workers 
   return Ran([](const EnsembleSpec& of, size_t i) { return PointExperiment::Create(of, i); }, spec,
              workers, device)
       ->finished.at(0);
+}
+
+TEST(ThreadExecutor, AnExceptionEndsTheRun) {
+  const auto outcome = [](auto exception) {
+    return *Ran(FakeExperiments([&](size_t, uint64_t block, std::stop_token) {
+                  if (block == 5) throw exception;
+                }),
+                FakeSpec(3, 20))
+                ->outcome;
+  };
+  EXPECT_THAT(outcome(std::runtime_error("the ball left the cell")),
+              StatusIs(absl::StatusCode::kInternal, HasSubstr("the ball left the cell")));
+  EXPECT_THAT(outcome(std::bad_alloc()),
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("out of memory")));
+}
+
+TEST(ThreadExecutor, ProcessorTimeIsReportedOfOpeningsAndBlocksAlike) {
+  const auto compute = [] {
+    const double begin = ThreadSeconds();
+    while (ThreadSeconds() - begin < 0.002) continue;
+  };
+  const ExperimentFactory slow = [&](const EnsembleSpec& spec, size_t index) {
+    compute();
+    return FakeExperiments([&](size_t, uint64_t, std::stop_token) { compute(); })(spec, index);
+  };
+  EXPECT_GE(Ran(slow, FakeSpec(1, 4))->work, 5 * 0.002);  // an opening and four blocks
 }
 
 // The test saves the record during a block and during a wait for the disk. It simulates that the
