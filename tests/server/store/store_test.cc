@@ -87,6 +87,11 @@ TEST_F(StoreTest, AnAnswerIsSearchedAmongTheNewestJobs) {
   EXPECT_EQ(asked, kMostAnswers);
 }
 
+TEST_F(StoreTest, TheReaderCannotWrite) {
+  const auto store = Open();
+  EXPECT_FALSE(store->Read([](Database& database) { database.Execute("DELETE FROM jobs"); }).ok());
+}
+
 // SQLite may make an empty log and an index beside the file.
 TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
   ASSERT_OK(Open()->Commit([&](Database& database) {
