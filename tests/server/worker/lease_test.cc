@@ -13,7 +13,7 @@ auto IsDataLoss() { return StatusIs(absl::StatusCode::kDataLoss); }
 
 // ---- the file ----
 
-TEST(LeaseFile, OtherFilesHaveOtherNames) {
+TEST(LeaseFile, ANameHasTheLeaseTheWorkerAndTheOutcome) {
   const auto done = ParseDone("0123-7.node1-42-abcd.no-memory");
   ASSERT_TRUE(done);
   EXPECT_EQ(done->Done(*done->outcome), "done/0123-7.node1-42-abcd.no-memory");

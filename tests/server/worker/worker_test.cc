@@ -75,6 +75,20 @@ TEST_F(WorkerTest, ComputesAllLeasesAndEndsWhenThereAreNoMore) {
   EXPECT_LE(now_, Clock::time_point() + std::chrono::seconds(90));
 }
 
+TEST_F(WorkerTest, AWorkerThatMustEndAfterItsChunkGivesItsLeaseBack) {
+  Lay("a", lease_, 0);
+  files_.Before("append", [this] {
+    end_ = EndOfWork::kAfterChunk;
+    return absl::OkStatus();
+  });
+  EXPECT_OK(Run());
+  ASSERT_THAT(Names(), ElementsAre("done/a.me.returned"));
+  const size_t computed = Computed("done/a.me.returned").size();
+  EXPECT_GE(computed, 2u);  // of which the worker has appended the first
+  EXPECT_LT(computed, chunks_.size());
+  EXPECT_THAT(lines_, IsEmpty());
+}
+
 TEST_F(WorkerTest, AFolderThatIsAwayForAMomentIsReportedAndTheWorkGoesOn) {
   bool is_away = true;
   files_.before = [&](const std::string& operation, const std::string&) {
