@@ -1,10 +1,10 @@
 #include "server/compute/thread_executor.h"
 
+#include <ctime>
 #include <latch>
 #include <new>
 
 #include "core/gpu/device_orbits.h"
-#include "server/processor_time.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/gpu/host_flights.h"
 #include "tests/core/one_point_spec.h"
@@ -31,24 +31,35 @@ BlockResult ResultOf(const EnsembleSpec& spec, OrbitDevice* device, int workers 
       ->finished.at(0);
 }
 
-TEST(ThreadExecutor, AnExceptionEndsTheRun) {
-  const auto outcome = [](auto exception) {
-    return *Ran(FakeExperiments([&](size_t, uint64_t block, std::stop_token) {
-                  if (block == 5) throw exception;
-                }),
-                FakeSpec(3, 20))
-                ->outcome;
-  };
-  EXPECT_THAT(outcome(std::runtime_error("the ball left the cell")),
+TEST(ThreadExecutor, AnExceptionFailsItsRunOnly) {
+  ThreadPool pool(2,
+                  FakeExperimentsBySeed([](uint64_t seed, size_t, uint64_t block, std::stop_token) {
+                    if (seed == 1 && block == 5) throw std::runtime_error("the ball left the cell");
+                    if (seed == 2 && block == 5) throw std::bad_alloc();
+                  }));
+  std::map<uint64_t, JournalPointer> journals;
+  for (const uint64_t seed : {1, 2, 3}) {
+    journals[seed] = std::make_shared<RecordingJournal>();
+    pool.scheduler().Add(RunOf(static_cast<int64_t>(seed), FakeSpec(3, 20, seed), journals[seed]));
+  }
+  for (const auto& [seed, journal] : journals) journal->AwaitEnd();
+  EXPECT_THAT(*journals[1]->outcome,
               StatusIs(absl::StatusCode::kInternal, HasSubstr("the ball left the cell")));
-  EXPECT_THAT(outcome(std::bad_alloc()),
+  EXPECT_THAT(*journals[2]->outcome,
               StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("out of memory")));
+  ExpectComplete(FakeSpec(3, 20, 3), *journals[3]);
 }
 
+// The test reads the clock itself, in nanoseconds.
 TEST(ThreadExecutor, ProcessorTimeIsReportedOfOpeningsAndBlocksAlike) {
-  const auto compute = [] {
-    const double begin = ThreadSeconds();
-    while (ThreadSeconds() - begin < 0.002) continue;
+  const auto nanoseconds = [] {
+    timespec time = {};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return 1'000'000'000 * time.tv_sec + time.tv_nsec;
+  };
+  const auto compute = [&] {
+    const int64_t begin = nanoseconds();
+    while (nanoseconds() - begin < 2'000'000) continue;
   };
   const ExperimentFactory slow = [&](const EnsembleSpec& spec, size_t index) {
     compute();
