@@ -252,7 +252,8 @@ TEST_F(SlurmToolsTest, VariablesThatChangeTheToolsAreRemoved) {
 // The states in the manual of squeue.
 TEST_F(SlurmToolsTest, AWorkerInTheQueueIsWaitingOrRunningOrHasEnded) {
   const auto queue_of = [&](const std::string& states) {
-    Install("squeue", "echo 'squeue: warning' >&2; printf '%s|None\\n' nonsense " + states);
+    Install("squeue",
+            "echo 'squeue: warning' >&2; echo PENDING; printf '%s|None\\n' nonsense " + states);
     const absl::StatusOr<SlurmQueue> queue = New().Query();
     EXPECT_OK(queue);
     return std::pair(queue->waiting, queue->running);
