@@ -74,13 +74,6 @@ TEST(OpenPoint, StoredChunksAreNotLeasedAndThoseOfAnotherModelAreDropped) {
   EXPECT_EQ(Next(point, 1000), Chunks(4, 6));
 }
 
-TEST(OpenPoint, AStoredStateOfAnotherShapeIsDataLoss) {
-  FoldState state = FakeState(SixChunks(), 0, 2);
-  state.partial.moments.resize(1000);
-  EXPECT_THAT(PointOf(SixChunks()).Resume({.state = StoredState{Model::kBilliard, state}}),
-              StatusIs(absl::StatusCode::kDataLoss));
-}
-
 // Chunks with crashes are a lease of their own.
 TEST(OpenPoint, ReturnedChunksComeFirstAndKeepTheirAttempt) {
   OpenPoint point = PointOf(SixChunks());
@@ -98,13 +91,14 @@ TEST(OpenPoint, ReturnedChunksComeFirstAndKeepTheirAttempt) {
   EXPECT_EQ(Next(point, 1000), Chunks(4, 6, 1));
 }
 
-TEST(OpenPoint, MemoryIsAwaitedOnlyForChunksThatAreLeft) {
+TEST(OpenPoint, ALeaseTakesNoMoreMemoryThanThereIs) {
   OpenPoint point = PointOf(SixChunks());
   point.memory = {.of_one_turn = 100};
   EXPECT_FALSE(point.AwaitsMemory({.memory = 100}));
   EXPECT_TRUE(point.AwaitsMemory({.memory = 99}));
+  EXPECT_FALSE(point.NextChunks({.local = kElsewhere, .seconds = 0, .memory = 99}));
   EXPECT_TRUE(point.NextChunks({.memory = 100}));
-  EXPECT_FALSE(point.AwaitsMemory({.memory = 99}));
+  EXPECT_FALSE(point.AwaitsMemory({.memory = 99}));  // nothing is left
 }
 
 TEST(OpenPoint, AChunkOfTooManyAttemptsIsForLocalExecutors) {
@@ -129,14 +123,14 @@ TEST(OpenPoint, ALongChunkIsForLocalExecutors) {
 }
 
 // With a tolerance, the chunks that are expected are leased, and beyond these an eighth of what is
-// merged, rounded up to whole chunks. The last point has chunks of one sample.
+// merged, rounded up to whole chunks. The chunks of `single` have one sample each.
 TEST(OpenPoint, BeyondTheExpectedEndAnEighthIsLeased) {
   EnsembleSpec fake = FakeSpec(1, 0);
   fake.target = {.tolerance = 0.05};
-  const std::shared_ptr<const PointExperiment>
-      doubling = FakeExperiments()(fake, 0),
-      single =
-          PointExperiment::Create(Asked("equilibrium delta=1e-5 tolerance=0.1 model=billiard"), 0);
+  using Experiment = std::shared_ptr<const PointExperiment>;
+  const Experiment doubling = FakeExperiments()(fake, 0);
+  const Experiment single =
+      PointExperiment::Create(Asked("equilibrium delta=1e-5 tolerance=0.1 model=billiard"), 0);
   const uint64_t expected = doubling->expected_chunks();
   ASSERT_LT(expected + 1, doubling->plan().chunks());
   ASSERT_LT(single->expected_chunks(), 2048u);

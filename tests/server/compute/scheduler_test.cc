@@ -34,6 +34,18 @@ TEST_F(SchedulerTest, AShutdownWritesACheckpointFromWhichALaterProcessGoesOn) {
   EXPECT_EQ(*computed.begin(), 45u);
 }
 
+TEST_F(SchedulerTest, ACheckpointOfAnotherShapeEndsTheRun) {
+  const EnsembleSpec spec = FakeSpec(1, 3);
+  const auto journal = Add(1, spec, [&](RunRequest&, RecordingJournal& later) {
+    later.stored[0] = FakeState(spec, 0, 2);
+    later.stored[0].partial.moments.resize(1000);
+  });
+  TakeAllTurns();
+  ASSERT_TRUE(journal->outcome);
+  EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kDataLoss));
+  EXPECT_TRUE(journal->finished.empty());
+}
+
 TEST_F(SchedulerTest, ACheckpointThatCannotBeReadNowIsReadAgain) {
   const EnsembleSpec spec = FakeSpec(1, 3);
   const auto journal = Add(1, spec, [&](RunRequest&, RecordingJournal& later) {
@@ -42,6 +54,7 @@ TEST_F(SchedulerTest, ACheckpointThatCannotBeReadNowIsReadAgain) {
   });
   TakeAllTurns();
   ExpectComplete(spec, *journal);
+  EXPECT_EQ(journal->restored[0], 2 * kFakeSamplesPerBlock);
 }
 
 // ---- budgets and tolerances ----

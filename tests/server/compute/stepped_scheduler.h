@@ -119,9 +119,9 @@ inline void ExpectComplete(const EnsembleSpec& spec, RecordingJournal& journal) 
 
 // ---- the scheduler ----
 
-// A scheduler, and its executors: a thread of this server, whose turns the test takes, and an
-// executor elsewhere. The test decides which chunks that one reports, how often and in which order,
-// and whether the lease is returned.
+// A scheduler, and its two executors. The test takes the turns of a thread of this server. It also
+// takes leases as an executor elsewhere, and decides which chunks of a lease are reported, how
+// often and in which order, and whether the lease is returned.
 struct SteppedScheduler {
   using Change = std::function<void(RunRequest& request, RecordingJournal& journal)>;
 
