@@ -1,7 +1,7 @@
 // A scheduler with threads that compute, as a server has them.
 #pragma once
 
-#include "server/compute/point_opener.h"
+#include "server/compute/crash_record.h"
 #include "server/compute/scheduler.h"
 #include "server/compute/thread_executor.h"
 #include "tests/server/factory_opener.h"
@@ -11,23 +11,21 @@ namespace ballpiston::server {
 
 class ThreadPool {
  public:
-  ThreadPool(int workers, ExperimentFactory factory)
-      : ThreadPool(workers, std::make_unique<FactoryOpener>(std::move(factory))) {}
-  ThreadPool(int workers, std::unique_ptr<PointOpener> opener)
-      : opener_(std::move(opener)), scheduler_(*opener_, workers), threads_(scheduler_, workers) {
+  ThreadPool(int workers, ExperimentFactory factory,
+             std::shared_ptr<CrashRecord> crashes = std::make_shared<CrashRecord>(),
+             OrbitDevice* device = nullptr)
+      : opener_(std::move(factory)),
+        scheduler_(opener_, workers),
+        threads_(scheduler_, workers, std::numeric_limits<double>::infinity(), std::move(crashes),
+                 device) {
     threads_.Start();
   }
-
-  ~ThreadPool() { Shutdown(); }
 
   Scheduler& scheduler() { return scheduler_; }
   const ThreadExecutor& threads() const { return threads_; }
 
-  void Add(RunRequest request) { scheduler_.Add(std::move(request)); }
-  void Shutdown() { scheduler_.Shutdown(); }
-
  private:
-  const std::unique_ptr<PointOpener> opener_;
+  FactoryOpener opener_;
   Scheduler scheduler_;
   ThreadExecutor threads_;
 };

@@ -17,7 +17,6 @@ class ClusterFolderTest : public testing::Test {
 
 TEST_F(ClusterFolderTest, HasASubfolderForEachState) {
   EXPECT_OK(PrepareFolder(shared_, "me"));
-  EXPECT_OK(PrepareFolder(shared_, "me"));
   EXPECT_THAT(NamesIn(shared_), UnorderedElementsAre("done", "log", "owner", "taken", "todo"));
   EXPECT_EQ(ModeOf(shared_ + "/todo"), 0700u);
 }

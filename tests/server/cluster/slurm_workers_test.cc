@@ -74,10 +74,13 @@ TEST_F(SlurmWorkersTest, AsManyWorkersAreSubmittedAsThereAreLeases) {
   EXPECT_EQ(workers.Status().problem, "");
 }
 
-TEST_F(SlurmWorkersTest, NoMoreWorkersThanTheFlagSays) {
+TEST_F(SlurmWorkersTest, NoMoreWorkersThanTheFlagSaysInArraysThatTheClusterTakes) {
   work_ = {.waiting_leases = 100};
   New({.workers = 10, .max_array_size = 4}).Look();
   EXPECT_THAT(slurm_.submitted, ElementsAre(4, 4, 2));
+  slurm_ = {.largest_array = 3};
+  New().Look();
+  EXPECT_THAT(slurm_.submitted, ElementsAre(2, 2, 2, 2, 2));
 }
 
 TEST_F(SlurmWorkersTest, WithoutLeasesTheQueueIsEmptiedAndNotAskedAgain) {
@@ -110,13 +113,6 @@ TEST_F(SlurmWorkersTest, TheQueueIsAskedOnceInAnInterval) {
   for (int i = 0; i < 5; ++i) workers.Look();
   EXPECT_EQ(slurm_.asked, 1);
   EXPECT_THAT(slurm_.submitted, ElementsAre(3));
-}
-
-TEST_F(SlurmWorkersTest, ArraysShrinkToTheClustersLimit) {
-  slurm_.largest_array = 3;
-  work_ = {.waiting_leases = 5};
-  New().Look();
-  EXPECT_THAT(slurm_.submitted, ElementsAre(2, 2, 1));
 }
 
 TEST_F(SlurmWorkersTest, AProblemIsShownUntilItIsGone) {
@@ -253,14 +249,18 @@ TEST_F(SlurmToolsTest, VariablesThatChangeTheToolsAreRemoved) {
               Not(Contains(testing::ContainsRegex("^(SLURM_JOB|SBATCH|SQUEUE|SCANCEL)"))));
 }
 
-TEST_F(SlurmToolsTest, TheQueueIsReadAndWarningsAreNot) {
-  Install("squeue",
-          "echo 'squeue: warning' >&2; printf 'PENDING|Priority\\nPENDING|Resources\\n"
-          "RUNNING|None\\nCOMPLETING|None\\nFAILED|None\\nnonsense\\n'");
-  ASSERT_OK_AND_ASSIGN(const SlurmQueue queue, New().Query());
-  EXPECT_EQ(queue.waiting, 2u);
-  EXPECT_EQ(queue.running, 2u);
-  EXPECT_EQ(queue.never, "");
+// The states in the manual of squeue.
+TEST_F(SlurmToolsTest, AWorkerInTheQueueIsWaitingOrRunningOrHasEnded) {
+  const auto queue_of = [&](const std::string& states) {
+    Install("squeue",
+            "echo 'squeue: warning' >&2; echo PENDING; printf '%s|None\\n' nonsense " + states);
+    const absl::StatusOr<SlurmQueue> queue = New().Query();
+    EXPECT_OK(queue);
+    return std::pair(queue->waiting, queue->running);
+  };
+  EXPECT_THAT(queue_of("PENDING REQUEUED REQUEUE_HOLD"), Pair(3, 0));
+  EXPECT_THAT(queue_of("RUNNING COMPLETING SUSPENDED"), Pair(0, 3));
+  EXPECT_THAT(queue_of("CANCELLED COMPLETED FAILED TIMEOUT"), Pair(0, 0));
 }
 
 // The server ends by fflush of all streams and _Exit.
@@ -300,23 +300,6 @@ TEST_F(SlurmToolsTest, AnErrorHasTheToolsMessage) {
   const ScopedVariable no_slurm("PATH", folder_.path()), english("LC_ALL", "C");
   EXPECT_THAT(New().Cancel(true),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("failed to run command")));
-}
-
-// The states in the manual of squeue.
-TEST(SlurmQueue, AWorkerIsWaitingOrRunningOrHasEnded) {
-  const auto counts = [](const std::string& state) {
-    const SlurmQueue queue = ParseQueue(state + "|None");
-    return std::pair(queue.waiting, queue.running);
-  };
-  for (const char* state : {"PENDING", "REQUEUED", "REQUEUE_HOLD"}) {
-    EXPECT_THAT(counts(state), Pair(1, 0)) << state;
-  }
-  for (const char* state : {"RUNNING", "COMPLETING", "SUSPENDED"}) {
-    EXPECT_THAT(counts(state), Pair(0, 1)) << state;
-  }
-  for (const char* state : {"CANCELLED", "COMPLETED", "TIMEOUT"}) {
-    EXPECT_THAT(counts(state), Pair(0, 0)) << state;
-  }
 }
 
 TEST(SlurmQueue, AWorkerThatAnOperatorMustHelpWaitsForEver) {

@@ -15,13 +15,16 @@ constexpr int kKilledFromOutside = 0;
 // Processes, one after the other, with the record in one folder.
 class CrashRecordTest : public testing::Test {
  protected:
-  using Turns = std::map<RunName, std::set<size_t>>;  // points that are being computed
+  // Points that are being computed. Without a point, the run is being examined.
+  using Turns = std::map<RunName, std::set<size_t>>;
 
-  // A process begins, computes, and dies of the signal. What is in the record at this moment stays.
+  // A process begins, computes, and dies of the signal in the last turn. What is in the record at
+  // this moment stays.
   void LiveAndDie(const Turns& turns, int signal, const OutOfMemoryKills& at_start = {}) {
     CrashRecord record(folder_.path(), at_start);
     std::vector<std::unique_ptr<CrashRecord::Entry>> computing;
     for (const auto& [run, points] : turns) {
+      if (points.empty()) computing.push_back(std::make_unique<CrashRecord::Entry>(record, run));
       for (const size_t point : points) {
         computing.push_back(std::make_unique<CrashRecord::Entry>(record, run, point));
       }
@@ -64,11 +67,7 @@ TEST_F(CrashRecordTest, AKillFromOutsideKeepsThePointsOfTheLastDeath) {
   EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{7}));
   LiveAndDie({{kSecond, {5}}}, SIGSEGV);
   EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{7}));
-  {
-    CrashRecord record(folder_.path(), {});
-    const CrashRecord::Entry examining(record, kFirst);
-    Die(SIGSEGV);
-  }
+  LiveAndDie({{kFirst, {}}}, SIGSEGV);
   EXPECT_EQ(Next()->Deaths(kFirst), 2);
   EXPECT_EQ(Next()->LastPoints(kFirst), (std::set<size_t>{7}));
   LiveAndDie({{kFirst, {8, 9}}}, SIGSEGV);
@@ -77,14 +76,7 @@ TEST_F(CrashRecordTest, AKillFromOutsideKeepsThePointsOfTheLastDeath) {
 }
 
 TEST_F(CrashRecordTest, ADeathInAnExaminationCountsForItsRunAlone) {
-  {
-    CrashRecord record(folder_.path(), {});
-    const CrashRecord::Entry computing(record, kFirst, 0);
-    std::thread([&] {
-      const CrashRecord::Entry examining(record, kSecond);
-      Die(SIGSEGV);
-    }).join();
-  }
+  LiveAndDie({{kFirst, {0}}, {kSecond, {}}}, SIGSEGV);
   const auto record = Next();
   EXPECT_EQ(record->Deaths(kFirst), 0);
   EXPECT_EQ(record->Deaths(kSecond), 1);

@@ -35,10 +35,10 @@ class MemoryLimitTest : public SchedulerTest {
 
   // The next turn that does not open a point. To open one takes a second, so that runs take turns.
   std::optional<Lease> BeginChunks() {
-    std::optional<Lease> lease = local_.Begin();
+    std::optional<Lease> lease = Begin();
     while (lease && lease->OpensPoints()) {
-      local_.End(*lease, 0, 1);
-      lease = local_.Begin();
+      End(*lease, 0, 1);
+      lease = Begin();
     }
     return lease;
   }
@@ -50,7 +50,7 @@ class MemoryLimitTest : public SchedulerTest {
     std::multiset<int64_t> runs;
     double bytes = 0;
     while (leases.size() < most) {
-      const auto lease = local_.Begin();
+      const auto lease = Begin();
       if (!lease) break;
       leases.push_back(*lease);
       if (lease->OpensPoints()) continue;
@@ -58,7 +58,7 @@ class MemoryLimitTest : public SchedulerTest {
       bytes += static_cast<double>(lease->run);
     }
     most_bytes_ = std::max(most_bytes_, bytes);
-    for (const Lease& lease : leases) local_.End(lease, blocks, 0.1);
+    for (const Lease& lease : leases) End(lease, blocks, 0.1);
     return runs;
   }
 
@@ -69,7 +69,7 @@ TEST_F(MemoryLimitTest, TheLeasesOfThisServerTakeNoMoreMemoryThanTheLimit) {
   std::map<int64_t, JournalPointer> journals;
   for (const int64_t bytes : {40, 50, 60, 70}) journals[bytes] = AddRun(bytes);
   for (int round = 0; round < 1000 && journals[70]->ends == 0; ++round) TurnsAtOnce(8, 100);
-  local_.TakeAllTurns();
+  TakeAllTurns();
   EXPECT_LE(most_bytes_, kLimitBytes);
   EXPECT_GE(most_bytes_, 90);  // the first two fit together
   for (const auto& [bytes, journal] : journals) ExpectComplete(SpecOfBytes(bytes), *journal);
@@ -77,7 +77,7 @@ TEST_F(MemoryLimitTest, TheLeasesOfThisServerTakeNoMoreMemoryThanTheLimit) {
 
 TEST_F(MemoryLimitTest, OnePointAloneMayTakeMore) {
   const auto large = AddRun(1000);
-  local_.TakeAllTurns();
+  TakeAllTurns();
   ExpectComplete(SpecOfBytes(1000), *large);
 }
 
@@ -100,13 +100,13 @@ TEST_F(MemoryLimitTest, ALargePointGetsItsTurn) {
   std::optional<Lease> lease = BeginChunks();
   for (int turn = 0; turn < 8 && lease->run != kLarge; ++turn) {
     std::optional<Lease> next = BeginChunks();
-    local_.End(*lease, kAllBlocks, 1);
+    End(*lease, kAllBlocks, 1);
     lease = next ? next : BeginChunks();
     ASSERT_TRUE(lease);
   }
   EXPECT_EQ(lease->run, kLarge);
-  local_.End(*lease, kAllBlocks);
-  local_.TakeAllTurns();
+  End(*lease, kAllBlocks);
+  TakeAllTurns();
   for (const auto& journal : journals) EXPECT_EQ(journal->ends, 1);
 }
 
@@ -127,20 +127,21 @@ TEST_F(MemoryLimitTest, APrincipalLeavesMemoryToTheOthers) {
   EXPECT_THAT(begin_all(), ElementsAre(12));
   AddRun(10, "bob");
   EXPECT_THAT(begin_all(), ElementsAre(10, 10));  // two threads
-  for (const Lease& lease : leases) local_.End(lease, 0);
+  for (const Lease& lease : leases) End(lease, 0);
 }
 
-// Points of 520 MB, of which some 500 MB stay while they wait for executors elsewhere.
-TEST(MemoryLimit, PointsWaitElsewhereWithinTheLimit) {
-  SteppedScheduler stepped(std::make_unique<SeedsAreBytes>(), {.memory_limit = 4e9});
-  RemoteExecutor remote(stepped.scheduler_, 1000);
-  EnsembleSpec spec = SixChunks(100);
-  spec.seed = 520'000'000;
-  stepped.Add(1, spec);
-  ASSERT_TRUE(stepped.local_.TakeTurn());
-  EXPECT_EQ(remote.TakeAll().size(), 1u);
-  ASSERT_TRUE(stepped.local_.TakeTurn());
-  EXPECT_EQ(remote.TakeAll().size(), 7u);
+// Points of 520 MB, of which some 500 MB stay while they wait. When the executor elsewhere is
+// hungry, 32 are opened ahead, or as many as the memory permits.
+TEST(MemoryLimit, PointsAreOpenedAheadForAHungryExecutorElsewhereWithinTheLimit) {
+  for (const auto& [limit, ahead] : {std::pair(kInfinity, 32u), {4e9, 7u}}) {
+    SteppedScheduler stepped(std::make_unique<SeedsAreBytes>(), {.memory_limit = limit});
+    EnsembleSpec spec = SixChunks(100);
+    spec.seed = 520'000'000;
+    stepped.Opened(1, spec);
+    EXPECT_EQ(stepped.TakeAllElsewhere(1000).size(), 1u);
+    ASSERT_TRUE(stepped.TakeTurn());
+    EXPECT_EQ(stepped.TakeAllElsewhere(1000).size(), ahead);
+  }
 }
 
 }  // namespace

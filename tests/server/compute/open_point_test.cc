@@ -1,5 +1,6 @@
 #include "server/compute/open_point.h"
 
+#include "tests/core/asked.h"
 #include "tests/server/compute/stepped_scheduler.h"
 #include "tests/server/preamble.h"
 
@@ -40,18 +41,6 @@ TEST(OpenPoint, AFiniteCapacityTakesTheFewestChunksThatFillIt) {
   EXPECT_EQ(Next(point, 5), Chunks(1, 3));
   EXPECT_EQ(Next(point, 1000), Chunks(3, 6));
   EXPECT_EQ(Next(point, 0), std::nullopt);
-}
-
-TEST(OpenPoint, ALeaseElsewhereContinuesTheBlocksOfAResumedPoint) {
-  OpenPoint point = PointOf(SixChunks());
-  const FoldState state = FakeState(SixChunks(), 0, 100);
-  ASSERT_GT(state.blocks, 0u);  // of a chunk that is not complete
-  ASSERT_OK(point.Resume({.state = StoredState{Model::kBilliard, state}}));
-  const auto lease = point.NextChunks({.local = kElsewhere, .seconds = 0});
-  ASSERT_TRUE(lease);
-  EXPECT_EQ(lease->start.chunk, state.chunk);
-  EXPECT_EQ(lease->start.blocks, state.blocks);
-  EXPECT_EQ(lease->start.merged, state.partial);
 }
 
 TEST(OpenPoint, ChunksThatArrivedEarlyAreSkipped) {
@@ -107,9 +96,7 @@ TEST(OpenPoint, ALeaseTakesNoMoreMemoryThanThereIs) {
   point.memory = {.of_one_turn = 100};
   EXPECT_FALSE(point.AwaitsMemory({.memory = 100}));
   EXPECT_TRUE(point.AwaitsMemory({.memory = 99}));
-  EXPECT_FALSE(point.NextChunks({.memory = 99}));
-  EXPECT_FALSE(point.NextChunks({.local = false, .seconds = 0, .memory = 99}));
-  EXPECT_TRUE(point.NextChunks({.local = false, .seconds = 0, .memory = 100}));
+  EXPECT_FALSE(point.NextChunks({.local = kElsewhere, .seconds = 0, .memory = 99}));
   EXPECT_TRUE(point.NextChunks({.memory = 100}));
   EXPECT_FALSE(point.AwaitsMemory({.memory = 99}));  // nothing is left
 }
@@ -135,73 +122,49 @@ TEST(OpenPoint, ALongChunkIsForLocalExecutors) {
   }
 }
 
-// ---- a tolerance ----
-
-EnsembleSpec WithTolerance() {
-  EnsembleSpec spec = FakeSpec(1, 0);
-  spec.target = {.tolerance = 0.05};
-  return spec;
-}
-
-// The variance of these samples is larger than expected.
-void AddScatteredChunks(OpenPoint& point, uint64_t first, uint64_t end) {
-  for (ChunkResult& chunk : ChunksOf(point, first, end)) {
-    chunk.result.moments[0].m2 *= 1e4;
-    point.fold().Add(std::move(chunk));
+// With a tolerance, the chunks that are expected are leased, and beyond these an eighth of what is
+// merged, rounded up to whole chunks. The chunks of `single` have one sample each.
+TEST(OpenPoint, BeyondTheExpectedEndAnEighthIsLeased) {
+  EnsembleSpec fake = FakeSpec(1, 0);
+  fake.target = {.tolerance = 0.05};
+  using Experiment = std::shared_ptr<const PointExperiment>;
+  const Experiment doubling = FakeExperiments()(fake, 0);
+  const Experiment single =
+      PointExperiment::Create(Asked("equilibrium delta=1e-5 tolerance=0.1 model=billiard"), 0);
+  const uint64_t expected = doubling->expected_chunks();
+  ASSERT_LT(expected + 1, doubling->plan().chunks());
+  ASSERT_LT(single->expected_chunks(), 2048u);
+  for (const auto& [experiment, merged, end] : {std::tuple(doubling, uint64_t{0}, expected),
+                                                {doubling, expected, expected + 1},
+                                                {doubling, expected + 1, expected + 2},
+                                                {single, 2048, 2304}}) {
+    OpenPoint point(experiment);
+    FoldState state = {.chunk = merged, .complete = experiment->EmptyResult()};
+    state.complete.samples = experiment->plan().SamplesBefore(merged);
+    if (merged > 0) point.fold().Resume(std::move(state));
+    EXPECT_EQ(Next(point, 1e12), Chunks(merged, end));
+    EXPECT_EQ(Next(point, 1e12), std::nullopt);
   }
 }
 
-TEST(OpenPoint, BeyondTheExpectedEndChunksComeOneByOne) {
-  OpenPoint point = PointOf(WithTolerance());
-  const uint64_t chunk = point.experiment()->expected_chunks();
-  ASSERT_LT(chunk + 1, point.experiment()->plan().chunks());
-  EXPECT_EQ(Next(point, 1e6), Chunks(0, chunk));
-  EXPECT_EQ(Next(point, 1e6), std::nullopt);
-  for (uint64_t next = chunk; next < chunk + 2; ++next) {
-    AddScatteredChunks(point, next == chunk ? 0 : next - 1, next);
-    EXPECT_EQ(Next(point, 1e6), Chunks(next, next + 1));
-    EXPECT_EQ(Next(point, 1e6), std::nullopt);
-  }
-}
-
-// The point has more than 64 chunks of one sample.
-TEST(OpenPoint, FarBeyondTheExpectedEndAnEighthIsLeased) {
-  OpenPoint point(PointExperiment::Create({.experiment = &kEquilibrium,
-                                           .grid = {{kRho, {0.53}}, {kDelta, {1e-5}}},
-                                           .target = {.tolerance = 0.1},
-                                           .model = Model::kBilliard},
-                                          0));
-  ASSERT_LT(point.experiment()->expected_chunks(), 2048u);
-  FoldState state = {.chunk = 2048, .complete = point.experiment()->EmptyResult()};
-  state.complete.samples = 2048;
-  point.fold().Resume(std::move(state));
-  EXPECT_EQ(Next(point, 1e12), Chunks(2048, 2304));
-}
-
-// ---- samples that continue each other ----
-
-std::shared_ptr<const PointExperiment> SteadyExperiment() {
-  return PointExperiment::Create(SteadySpec({.samples = 1000}), 0);
-}
-
+// A group's next chunk starts from the state in which its earlier one ended.
 TEST(OpenPoint, GroupsOfTrajectoriesAreLeasesOfTheirOwn) {
-  OpenPoint point(SteadyExperiment());
-  std::vector<Lease> leases;
-  while (auto lease = point.NextChunks({.local = false, .seconds = 1000})) leases.push_back(*lease);
-  ASSERT_EQ(leases.size(), 16u);  // the other chunks have no start yet
-  for (uint64_t group = 0; group < 16; ++group) {
-    EXPECT_EQ(leases[group].start.chunk, group);
-    EXPECT_EQ(leases[group].end, group + 1);
+  OpenPoint point(PointExperiment::Create(Asked("gas-conduction model=markov samples=1000"), 0));
+  const auto next = [&] { return point.NextChunks({.local = kElsewhere, .seconds = 1000}); };
+  const auto first = next();
+  ASSERT_TRUE(first);
+  for (uint64_t group = 1; group < 16; ++group) {
+    EXPECT_EQ(Next(point, 1000, kElsewhere), Chunks(group, group + 1));
   }
+  EXPECT_FALSE(next());
   point.Return(5, 6, 2);
   EXPECT_EQ(Next(point, 1000, kElsewhere), Chunks(5, 6, 2));
-  const ChunkResult first = ComputedChunks(leases[0]).front();
-  point.fold().Add(first);
-  const auto next = point.NextChunks({.local = false, .seconds = 1000});
-  ASSERT_TRUE(next);
-  EXPECT_EQ(next->start.chunk, 16u);
-  EXPECT_EQ(next->groups[0], first.result.groups[0]);
-  EXPECT_FALSE(point.NextChunks({.local = false, .seconds = 1000}));
+  const ChunkResult chunk = ComputedChunks(*first).front();
+  point.fold().Add(chunk);
+  const auto later = next();
+  ASSERT_TRUE(later);
+  EXPECT_EQ(later->start.chunk, 16u);
+  EXPECT_EQ(later->groups[0], chunk.result.groups[0]);
 }
 
 }  // namespace

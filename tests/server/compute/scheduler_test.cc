@@ -3,9 +3,7 @@
 // the same bytes.
 #include "server/compute/scheduler.h"
 
-#include <ctime>
-#include <new>
-
+#include "tests/core/asked.h"
 #include "tests/server/compute/stepped_scheduler.h"
 #include "tests/server/preamble.h"
 
@@ -17,8 +15,8 @@ namespace {
 TEST_F(SchedulerTest, AShutdownWritesACheckpointFromWhichALaterProcessGoesOn) {
   const EnsembleSpec spec = FakeSpec(2, 80);
   const auto journal = Add(1, spec);
-  local_.TakeTurn();  // opens the first point
-  local_.TakeTurn(45);
+  TakeTurn();  // opens the first point
+  TakeTurn(45);
   scheduler_.Shutdown();
   ASSERT_EQ(journal->checkpoints.size(), 1u);
 
@@ -29,7 +27,7 @@ TEST_F(SchedulerTest, AShutdownWritesACheckpointFromWhichALaterProcessGoesOn) {
   const auto later = next.Add(1, spec, [&](RunRequest&, RecordingJournal& of_later) {
     of_later.stored = journal->checkpoints;
   });
-  next.local_.TakeAllTurns();
+  next.TakeAllTurns();
   ExpectComplete(spec, *later);
   EXPECT_EQ(later->restored[0], 45 * kFakeSamplesPerBlock);
   EXPECT_EQ(computed.size(), 35u);
@@ -42,7 +40,7 @@ TEST_F(SchedulerTest, ACheckpointOfAnotherShapeEndsTheRun) {
     later.stored[0] = FakeState(spec, 0, 2);
     later.stored[0].partial.moments.resize(1000);
   });
-  local_.TakeAllTurns();
+  TakeAllTurns();
   ASSERT_TRUE(journal->outcome);
   EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kDataLoss));
   EXPECT_TRUE(journal->finished.empty());
@@ -54,8 +52,9 @@ TEST_F(SchedulerTest, ACheckpointThatCannotBeReadNowIsReadAgain) {
     later.stored[0] = FakeState(spec, 0, 2);
     later.unreadable = 2;
   });
-  local_.TakeAllTurns();
+  TakeAllTurns();
   ExpectComplete(spec, *journal);
+  EXPECT_EQ(journal->restored[0], 2 * kFakeSamplesPerBlock);
 }
 
 // ---- budgets and tolerances ----
@@ -74,7 +73,7 @@ EnsembleSpec WithTarget(int points, const Target& target) {
 TEST_F(SchedulerTest, AToleranceAloneThatTheMostSamplesDoNotReachIsMissed) {
   const EnsembleSpec spec = WithTarget(2, {.tolerance = 1e-6});
   const auto journal = Add(1, spec);
-  local_.TakeAllTurns();
+  TakeAllTurns();
   EXPECT_EQ(journal->finished.size(), 2u);
   EXPECT_EQ(journal->finished.at(0), FakeMerged(spec, 0, 1000));
   EXPECT_THAT(*journal->outcome,
@@ -84,7 +83,7 @@ TEST_F(SchedulerTest, AToleranceAloneThatTheMostSamplesDoNotReachIsMissed) {
     of_later.stored[1] = FakeState(spec, 1, 1000);  // the end of the point
     request.finished[0] = true;
   });
-  local_.TakeAllTurns();
+  TakeAllTurns();
   EXPECT_TRUE(later->merged.empty());
   EXPECT_THAT(*later->outcome,
               StatusIs(absl::StatusCode::kDeadlineExceeded, HasSubstr("point 1: tolerance 1e-06")));
@@ -101,9 +100,9 @@ TEST_F(SchedulerTest, ARunWithoutAPointLeftEndsAtOnce) {
 TEST(Budget, TrajectoriesEndWithTheirFirstStageAtTheEarliest) {
   SteppedScheduler stepped(
       [](const EnsembleSpec& spec, size_t point) { return PointExperiment::Create(spec, point); });
-  const EnsembleSpec spec = SteadySpec({.budget_seconds = kSpentAtOnce});
+  const EnsembleSpec spec = Asked("gas-conduction model=markov budget=1e-12");
   const auto journal = stepped.Add(1, spec);
-  stepped.local_.TakeAllTurns();
+  stepped.TakeAllTurns();
   const ChunkPlan plan = PointExperiment::Create(spec, 0)->plan();
   EXPECT_EQ(journal->finished.at(0).samples, plan.SamplesBefore(plan.groups()));
 }
@@ -115,7 +114,7 @@ TEST_F(SchedulerTest, AtTheEndOfABudgetTheStatedErrorAloneDecides) {
     const EnsembleSpec spec =
         WithTarget(5, {.tolerance = tolerance, .budget_seconds = kSpentAtOnce});
     const auto journal = Add(key, spec);
-    local_.TakeAllTurns();
+    TakeAllTurns();
     EXPECT_EQ(journal->finished.size(), 5u);
     for (const auto& [point, merged] : journal->finished) {
       EXPECT_EQ(merged, FakeMerged(spec, point, 1));
@@ -133,66 +132,20 @@ TEST_F(SchedulerTest, AtTheEndOfABudgetTheStatedErrorAloneDecides) {
 }
 
 TEST_F(SchedulerTest, AReachedToleranceEndsBeforeTheBudget) {
-  for (const Target& target :
-       {Target{.tolerance = 0.05}, Target{.tolerance = 0.05, .budget_seconds = 1e6}}) {
-    const EnsembleSpec spec = WithTarget(3, target);
-    const auto journal = Add(1, spec);
-    local_.TakeAllTurns();
-    ASSERT_TRUE(journal->outcome);
-    EXPECT_OK(*journal->outcome);
-    ASSERT_EQ(journal->finished.size(), 3u);
-    for (const auto& [point, merged] : journal->finished) {
-      EXPECT_GT(merged.samples, 64u);  // more than one chunk
-      EXPECT_LT(merged.samples, 1000 * kFakeSamplesPerBlock);
-      EXPECT_TRUE(merged == FakeMerged(spec, point, merged.samples / kFakeSamplesPerBlock));
-    }
+  const EnsembleSpec spec = WithTarget(3, {.tolerance = 0.05, .budget_seconds = 1e6});
+  const auto journal = Add(1, spec);
+  TakeAllTurns();
+  ASSERT_TRUE(journal->outcome);
+  EXPECT_OK(*journal->outcome);
+  ASSERT_EQ(journal->finished.size(), 3u);
+  for (const auto& [point, merged] : journal->finished) {
+    EXPECT_GT(merged.samples, 64u);  // more than one chunk
+    EXPECT_LT(merged.samples, 1000 * kFakeSamplesPerBlock);
+    EXPECT_TRUE(merged == FakeMerged(spec, point, merged.samples / kFakeSamplesPerBlock));
   }
 }
 
-TEST(Scheduler, ProcessorTimeIsReportedOfOpeningsAndBlocksAlike) {
-  const auto nanoseconds = [] {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return 1'000'000'000 * time.tv_sec + time.tv_nsec;
-  };
-  const auto compute = [&] {
-    const int64_t begin = nanoseconds();
-    while (nanoseconds() - begin < 2'000'000) continue;
-  };
-  ThreadPool pool(2, [&](const EnsembleSpec& spec, size_t index) {
-    if (spec.seed == 2) compute();
-    return FakeExperiments([&, seed = spec.seed](size_t, uint64_t, std::stop_token) {
-      if (seed == 2) compute();
-    })(spec, index);
-  });
-  const auto work_of = [&](uint64_t seed) {
-    const auto journal = std::make_shared<RecordingJournal>();
-    pool.Add(RunOf(static_cast<int64_t>(seed), FakeSpec(1, 4, seed), journal));
-    EXPECT_OK(journal->AwaitEnd());
-    return journal->work;
-  };
-  EXPECT_GT(work_of(1), 0);
-  EXPECT_GE(work_of(2), 5 * 0.002);  // an opening and four blocks
-}
-
 // ---- several runs ----
-
-TEST(Scheduler, AnExceptionFailsItsRunOnly) {
-  SteppedScheduler stepped(
-      FakeExperimentsBySeed([](uint64_t seed, size_t, uint64_t block, std::stop_token) {
-        if (seed == 1 && block == 5) throw std::runtime_error("the ball left the cell");
-        if (seed == 2 && block == 5) throw std::bad_alloc();
-      }));
-  const auto failing = stepped.Add(1, FakeSpec(3, 20, 1));
-  const auto large = stepped.Add(2, FakeSpec(3, 20, 2));
-  const auto good = stepped.Add(3, FakeSpec(3, 20, 3));
-  stepped.local_.TakeAllTurns();
-  EXPECT_THAT(*failing->outcome,
-              StatusIs(absl::StatusCode::kInternal, HasSubstr("the ball left the cell")));
-  EXPECT_THAT(*large->outcome,
-              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("out of memory")));
-  ExpectComplete(FakeSpec(3, 20, 3), *good);
-}
 
 // Each turn of the first run opens or finishes a point.
 TEST_F(SchedulerTest, AWaitForTheDiskIsTimeOfTheRunWithResults) {
@@ -217,38 +170,22 @@ TEST_F(SchedulerTest, AHigherPriorityIsServedFirst) {
 
 // ---- executors elsewhere ----
 
-// A capacity for one chunk, and for all chunks of a point.
-constexpr double kOneChunk = 0;
-constexpr double kWholePoint = 1000;
-
-class ElsewhereTest : public SchedulerTest {
- protected:
-  // Adds a run and opens its first point.
-  JournalPointer Begin(const EnsembleSpec& spec, int64_t key = 1) {
-    JournalPointer journal = Add(key, spec);
-    EXPECT_TRUE(local_.TakeTurn());
-    return journal;
-  }
-
-  RemoteExecutor remote_{scheduler_, kOneChunk};
-};
-
-TEST_F(ElsewhereTest, AnEarlyChunkIsStoredAndAMergedOneIsInTheCheckpoint) {
-  const auto journal = Begin(SixChunks());
-  const std::vector<Lease> leases = remote_.TakeAll();
+TEST_F(SchedulerTest, AnEarlyChunkIsStoredAndAMergedOneIsInTheCheckpoint) {
+  const auto journal = Opened(1, SixChunks());
+  const std::vector<Lease> leases = TakeAllElsewhere();
   ASSERT_EQ(leases.size(), kChunks);
-  EXPECT_OK(remote_.ReportAll(leases[2]));
+  EXPECT_OK(ReportAll(leases[2]));
   ASSERT_EQ(journal->early[0].size(), 1u);
   EXPECT_EQ(journal->early[0][0].chunk, 2u);
   EXPECT_TRUE(journal->checkpoints.empty());
-  EXPECT_OK(remote_.ReportAll(leases[0]));
+  EXPECT_OK(ReportAll(leases[0]));
   EXPECT_EQ(journal->checkpoints[0].chunk, 1u);
-  EXPECT_OK(remote_.ReportAll(leases[1]));
+  EXPECT_OK(ReportAll(leases[1]));
   EXPECT_EQ(journal->checkpoints[0].chunk, 3u);
   EXPECT_EQ(journal->early[0].size(), 1u);
 }
 
-TEST_F(ElsewhereTest, ADamagedChunkIsRejectedAndTheOthersAreMerged) {
+TEST_F(SchedulerTest, ADamagedChunkIsRejectedAndTheOthersAreMerged) {
   constexpr uint64_t kMost = std::numeric_limits<uint64_t>::max();
   const std::vector<std::function<void(ChunkResult&)>> damages = {
       [](ChunkResult& chunk) {
@@ -258,112 +195,103 @@ TEST_F(ElsewhereTest, ADamagedChunkIsRejectedAndTheOthersAreMerged) {
       [](ChunkResult& chunk) { chunk.chunk = kChunks; },
       [](ChunkResult& chunk) { chunk.chunk = kMost; },
       [](ChunkResult& chunk) { chunk.result = {}; }};
-  RemoteExecutor remote(scheduler_, kWholePoint);
   int64_t key = 0;
   for (const auto& damage : damages) {
-    const auto journal = Begin(SixChunks(), ++key);
-    const auto lease = remote.Take();
+    const auto journal = Opened(++key, SixChunks());
+    const auto lease = TakeElsewhere(1000);
     ASSERT_TRUE(lease);
     std::vector<ChunkResult> chunks = ComputedChunks(*lease);
     const ChunkResult right = chunks[1];
     damage(chunks[1]);
-    EXPECT_THAT(remote.Report(*lease, chunks), StatusIs(absl::StatusCode::kDataLoss));
+    EXPECT_THAT(Report(*lease, chunks), StatusIs(absl::StatusCode::kDataLoss));
     EXPECT_EQ(journal->merged[0], 64u);
-    EXPECT_OK(remote.Report(*lease, {right}));
+    EXPECT_OK(Report(*lease, {right}));
     ExpectComplete(SixChunks(), *journal);
   }
 }
 
 // A chunk with fewer samples than its merged blocks have.
-TEST_F(ElsewhereTest, AChunkThatContradictsItsMergedBlocksIsRefused) {
-  const auto journal = Begin(SixChunks());
-  const auto lost = remote_.Take();
-  remote_.Return(*lost);
-  ASSERT_TRUE(local_.TakeTurn(10));
+TEST_F(SchedulerTest, AChunkThatContradictsItsMergedBlocksIsRefused) {
+  const auto journal = Opened(1, SixChunks());
+  const auto lost = TakeElsewhere();
+  scheduler_.Return(*lost);
+  ASSERT_TRUE(TakeTurn(10));
   ChunkResult damaged = ComputedChunks(*lost)[0];
   damaged.result.samples = 3;
-  EXPECT_THAT(remote_.Report(*lost, {damaged}), StatusIs(absl::StatusCode::kDataLoss));
+  EXPECT_THAT(Report(*lost, {damaged}), StatusIs(absl::StatusCode::kDataLoss));
   EXPECT_EQ(journal->merged[0], 10 * kFakeSamplesPerBlock);
-  local_.TakeAllTurns();
+  TakeAllTurns();
   ExpectComplete(SixChunks(), *journal);
 }
 
-TEST_F(ElsewhereTest, AnUntriedLeaseCountsNoAttempt) {
-  Begin(SixChunks());
+TEST_F(SchedulerTest, AnUntriedLeaseCountsNoAttempt) {
+  Opened(1, SixChunks());
   for (int i = 0; i < 20; ++i) {
-    const auto lease = remote_.Take();
+    const auto lease = TakeElsewhere();
     ASSERT_TRUE(lease);
     EXPECT_EQ(lease->start.chunk, 0u);
     EXPECT_EQ(lease->attempt, 1);
-    remote_.Return(*lease, false);
+    scheduler_.Return(*lease, false);
   }
 }
 
-TEST_F(ElsewhereTest, ASmallRunAndARunWithABudgetStayLocal) {
+TEST_F(SchedulerTest, ASmallRunAndARunWithABudgetStayLocal) {
   const EnsembleSpec small = FakeSpec(1, 1400);  // 59 s
-  const auto journal = Begin(small);
-  EXPECT_FALSE(remote_.Take());
-  local_.TakeAllTurns();
+  const auto journal = Opened(1, small);
+  EXPECT_FALSE(TakeElsewhere());
+  TakeAllTurns();
   ExpectComplete(small, *journal);
-  Begin(WithTarget(10, {.budget_seconds = 1e6}), 2);
-  EXPECT_FALSE(remote_.Take());
+  Opened(2, WithTarget(10, {.budget_seconds = 1e6}));
+  EXPECT_FALSE(TakeElsewhere());
   scheduler_.Cancel(2);
-  Begin(FakeSpec(1, 1440), 3);  // 60.4 s
-  EXPECT_TRUE(remote_.Take());
+  Opened(3, FakeSpec(1, 1440));  // 60.4 s
+  EXPECT_TRUE(TakeElsewhere());
 }
 
-TEST_F(ElsewhereTest, APointIsComputedBeforeTheNextOneIsOpened) {
-  Begin(SixChunks(100));
-  const auto next = local_.Begin();
+TEST_F(SchedulerTest, APointIsComputedBeforeTheNextOneIsOpened) {
+  Opened(1, SixChunks(100));
+  const auto next = Begin();
   ASSERT_TRUE(next);
   EXPECT_FALSE(next->OpensPoints());
-  local_.End(*next, 1);
+  End(*next, 1);
 }
 
-TEST_F(ElsewhereTest, PointsAreOpenedAheadForAHungryExecutorElsewhere) {
-  RemoteExecutor remote(scheduler_, kWholePoint);
-  Begin(SixChunks(100));
-  EXPECT_EQ(remote.TakeAll().size(), 1u);
-  ASSERT_TRUE(local_.TakeTurn());
-  EXPECT_EQ(remote.TakeAll().size(), 32u);
-}
-
-TEST_F(ElsewhereTest, AStoppedRunEndsWhenItsTurnsHaveEnded) {
-  const auto journal = Begin(SixChunks(2));
-  const auto elsewhere = remote_.Take();
-  const auto here = local_.Begin();
+TEST_F(SchedulerTest, AStoppedRunEndsWhenItsTurnsHaveEnded) {
+  const auto journal = Opened(1, SixChunks(2));
+  const auto elsewhere = TakeElsewhere();
+  const auto here = Begin();
   ASSERT_TRUE(elsewhere && here);
   scheduler_.Cancel(1);
   EXPECT_TRUE(elsewhere->stop.stop_requested());
   EXPECT_TRUE(here->stop.stop_requested());
   EXPECT_FALSE(scheduler_.Needs(*elsewhere));
   EXPECT_EQ(journal->ends, 0);
-  EXPECT_FALSE(remote_.Take());
-  EXPECT_FALSE(local_.Begin());
-  local_.End(*here, 1);
+  EXPECT_FALSE(TakeElsewhere());
+  EXPECT_FALSE(Begin());
+  End(*here, 1);
   EXPECT_EQ(journal->ends, 1);
   EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kCancelled));
-  EXPECT_OK(remote_.ReportAll(*elsewhere));
-  remote_.Return(*elsewhere);
+  EXPECT_OK(ReportAll(*elsewhere));
+  scheduler_.Return(*elsewhere);
   EXPECT_EQ(journal->ends, 1);
 }
 
-TEST_F(ElsewhereTest, AReportThatFailsEndsItsRun) {
-  const auto journal = Begin(SixChunks());
-  const auto lease = remote_.Take();
+TEST_F(SchedulerTest, AReportThatFailsEndsItsRun) {
+  const auto journal = Opened(1, SixChunks());
+  const auto lease = TakeElsewhere();
   ASSERT_TRUE(lease);
   journal->has_no_memory = true;
-  EXPECT_OK(remote_.ReportAll(*lease));
+  EXPECT_OK(ReportAll(*lease));
   EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kResourceExhausted));
 }
 
 // An earlier process gave the lease, and another job has the key now.
-TEST_F(ElsewhereTest, ReportsOfAnotherJobWithTheSameKeyAreDropped) {
-  const auto journal = Begin(SixChunks());
-  std::optional<Lease> other = remote_.Take();
+TEST_F(SchedulerTest, ReportsOfAnotherJobWithTheSameKeyAreDropped) {
+  const auto journal = Opened(1, SixChunks());
+  std::optional<Lease> other = TakeElsewhere();
   ASSERT_TRUE(other);
   other->generation = 7;
-  EXPECT_OK(remote_.ReportAll(*other));
+  EXPECT_OK(ReportAll(*other));
   EXPECT_TRUE(journal->merged.empty());
 }
 

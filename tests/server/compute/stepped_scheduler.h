@@ -1,8 +1,7 @@
-// A scheduler that a test drives step by step, so that every schedule can be repeated: a journal
-// that remembers everything, executors without threads, and runs of fake experiments.
+// A scheduler without threads that a test drives step by step, so that every schedule can be
+// repeated, its runs of fake experiments, and a journal that remembers everything.
 #pragma once
 
-#include "server/compute/guarded.h"
 #include "server/compute/run_journal.h"
 #include "tests/server/preamble.h"
 #include "tests/server/worker/sample_leases.h"
@@ -58,15 +57,15 @@ class RecordingJournal : public RunJournal {
     std::lock_guard lock(mutex);
     outcome = status;
     ++ends;
-    changed.notify_all();
   }
 
   double AwaitRoom() override { return await_room(); }
 
-  absl::Status AwaitEnd() {  // if threads compute the run
-    std::unique_lock lock(mutex);
-    AwaitNotified(changed, lock, [this] { return outcome.has_value(); });
-    return *outcome;
+  void AwaitEnd() {  // if threads compute the run
+    AwaitThat([this] {
+      std::lock_guard lock(mutex);
+      return outcome.has_value();
+    });
   }
 
   std::map<size_t, FoldState> stored;  // set before the run: what an earlier process stored
@@ -74,7 +73,6 @@ class RecordingJournal : public RunJournal {
   std::function<double()> await_room = [] { return 0; };
   bool has_no_memory = false;  // to merge
   std::mutex mutex;
-  std::condition_variable changed;
   int ends = 0;
   double work = 0;
   uint64_t changes = 0;
@@ -97,25 +95,12 @@ inline EnsembleSpec SixChunks(int points = 1) {
   return spec;
 }
 
-// 16 groups of trajectories.
-inline EnsembleSpec SteadySpec(const Target& target) {
-  return {.experiment = &kGasConduction,
-          .grid = {{kRho, {0.53}},
-                   {kDelta, {0.1}},
-                   {kCells, {CodeOf({.columns = 2})}},
-                   {kHot, {2}},
-                   {kCold, {1}}},
-          .target = target,
-          .model = Model::kMarkov};
-}
-
 inline RunRequest RunOf(int64_t key, const EnsembleSpec& spec, const JournalPointer& journal) {
-  RunRequest request;
-  request.key = key;
-  request.spec = spec;
-  request.finished.assign(PointCount(spec), false);
-  request.journal = journal;
-  return request;
+  return {.key = key,
+          .principal = "",
+          .spec = spec,
+          .finished = std::vector<bool>(PointCount(spec)),
+          .journal = journal};
 }
 
 // Every point has the bytes that it has if it is computed in one place, and its samples were
@@ -132,15 +117,49 @@ inline void ExpectComplete(const EnsembleSpec& spec, RecordingJournal& journal) 
   }
 }
 
-// ---- executors ----
+// ---- the scheduler ----
 
-// A local executor: the test takes its turns.
-class SteppedExecutor {
- public:
-  explicit SteppedExecutor(Scheduler& scheduler) : scheduler_(scheduler) {}
+// A scheduler, and its two executors. The test takes the turns of a thread of this server. It also
+// takes leases as an executor elsewhere, and decides which chunks of a lease are reported, how
+// often and in which order, and whether the lease is returned.
+struct SteppedScheduler {
+  using Change = std::function<void(RunRequest& request, RecordingJournal& journal)>;
+
+  explicit SteppedScheduler(std::unique_ptr<PointOpener> points,
+                            const SchedulerOptions& options = {})
+      : opener_(std::move(points)), scheduler_(*opener_, 1, options) {}
+  explicit SteppedScheduler(ExperimentFactory factory = FakeExperiments(),
+                            const SchedulerOptions& options = {})
+      : SteppedScheduler(std::make_unique<FactoryOpener>(std::move(factory)), options) {}
+  ~SteppedScheduler() { scheduler_.Shutdown(); }
+
+  const std::unique_ptr<PointOpener> opener_;
+  Scheduler scheduler_;
+
+  // Adds a run, after a change of its request or of its journal.
+  JournalPointer Add(int64_t key, const EnsembleSpec& spec, const Change& change = nullptr) {
+    auto journal = std::make_shared<RecordingJournal>();
+    RunRequest request = RunOf(key, spec, journal);
+    if (change) change(request, *journal);
+    request.has_checkpoints = !journal->stored.empty();
+    scheduler_.Add(std::move(request));
+    return journal;
+  }
+
+  // The same, and opens its first point.
+  JournalPointer Opened(int64_t key, const EnsembleSpec& spec) {
+    JournalPointer journal = Add(key, spec);
+    EXPECT_TRUE(TakeTurn());
+    return journal;
+  }
+
+  // ---- this server's thread ----
 
   // Begins a turn; empty if there is no lease now.
-  std::optional<Lease> Begin() { return scheduler_.Next(capacity_); }
+  std::optional<Lease> Begin() {
+    return scheduler_.Next(
+        {.share = [](const Lease& lease) { return std::make_shared<Fold>(lease); }});
+  }
 
   // Opens the points of the lease, or computes at most `blocks` blocks of it. Ends the turn, which
   // took `seconds`.
@@ -162,6 +181,34 @@ class SteppedExecutor {
     }
   }
 
+  // The runs of the next turns, in order; each turn computes at most so many blocks.
+  std::vector<int64_t> Turns(int turns, uint64_t blocks) {
+    std::vector<int64_t> runs;
+    while (std::ssize(runs) < turns) {
+      const auto lease = Begin();
+      if (!lease) break;
+      runs.push_back(lease->run);
+      End(*lease, blocks);
+    }
+    return runs;
+  }
+
+  // ---- elsewhere ----
+
+  // A lease has the fewest chunks that take `seconds`; a fake sample takes 0.02 s.
+  std::optional<Lease> TakeElsewhere(double seconds = 0) {
+    return scheduler_.Next({.local = false, .seconds = seconds});
+  }
+  std::vector<Lease> TakeAllElsewhere(double seconds = 0) {
+    std::vector<Lease> leases;
+    while (std::optional<Lease> lease = TakeElsewhere(seconds)) leases.push_back(*std::move(lease));
+    return leases;
+  }
+  absl::Status Report(const Lease& lease, std::vector<ChunkResult> chunks) {
+    return scheduler_.Report(lease, {.chunks = std::move(chunks)});
+  }
+  absl::Status ReportAll(const Lease& lease) { return Report(lease, ComputedChunks(lease)); }
+
  private:
   struct Fold : SharedWork {
     explicit Fold(const Lease& lease) : fold(lease.experiment->plan(), lease.start, lease.end) {}
@@ -171,101 +218,21 @@ class SteppedExecutor {
   };
 
   void Compute(const Lease& lease, uint64_t blocks) {
-    const PointExperiment& experiment = *lease.experiment;
+    constexpr double kSecondsOfABlock = 1e-3;  // without work a shutdown has nothing to write
     ChunkFold& fold = static_cast<Fold&>(*lease.work).fold;
-    const absl::Status computed = Guarded(lease.point, [&] {
-      while (blocks-- > 0 && !lease.stop.stop_requested()) {
-        const std::optional<Block> block = fold.NextBlock();
-        if (!block) break;
-        LeaseReport report = {.chunks = fold.Add(*block, RunBlock(experiment, *block)),
-                              .partial = fold.partial(),
-                              .seconds = kSecondsOfABlock};
-        const absl::Status taken = scheduler_.Report(lease, std::move(report));
-        if (!taken.ok()) return taken;
-      }
-      return absl::OkStatus();
-    });
-    if (!computed.ok()) scheduler_.Stop(lease.run, computed);
-  }
-
-  // Without work there is nothing to write at a shutdown.
-  static constexpr double kSecondsOfABlock = 1e-3;
-
-  Scheduler& scheduler_;
-  const Capacity capacity_ = {
-      .share = [](const Lease& lease) { return std::make_shared<Fold>(lease); }};
-};
-
-// An executor elsewhere: the test decides when a lease is taken, which chunks are reported, how
-// often and in which order, and whether the lease is returned.
-class RemoteExecutor {
- public:
-  // A lease has the fewest chunks that take `seconds`; a fake sample takes 0.02 s.
-  RemoteExecutor(Scheduler& scheduler, double seconds)
-      : scheduler_(scheduler), capacity_{.local = false, .seconds = seconds} {}
-
-  std::optional<Lease> Take() { return scheduler_.Next(capacity_); }
-  std::vector<Lease> TakeAll() {
-    std::vector<Lease> leases;
-    while (std::optional<Lease> lease = Take()) leases.push_back(*std::move(lease));
-    return leases;
-  }
-  absl::Status Report(const Lease& lease, std::vector<ChunkResult> chunks) {
-    return scheduler_.Report(lease, {.chunks = std::move(chunks)});
-  }
-  absl::Status ReportAll(const Lease& lease) { return Report(lease, ComputedChunks(lease)); }
-  void Return(const Lease& lease, bool tried = true) { scheduler_.Return(lease, tried); }
-
- private:
-  Scheduler& scheduler_;
-  const Capacity capacity_;
-};
-
-// ---- the scheduler ----
-
-// A scheduler and its local executor.
-struct SteppedScheduler {
-  explicit SteppedScheduler(std::unique_ptr<PointOpener> points,
-                            const SchedulerOptions& options = {})
-      : opener_(std::move(points)), scheduler_(*opener_, 1, options), local_(scheduler_) {}
-  explicit SteppedScheduler(ExperimentFactory factory, const SchedulerOptions& options = {})
-      : SteppedScheduler(std::make_unique<FactoryOpener>(std::move(factory)), options) {}
-  ~SteppedScheduler() { scheduler_.Shutdown(); }
-
-  // Adds a run, after a change of its request or of its journal.
-  using Change = std::function<void(RunRequest& request, RecordingJournal& journal)>;
-  JournalPointer Add(int64_t key, const EnsembleSpec& spec, const Change& change = nullptr) {
-    auto journal = std::make_shared<RecordingJournal>();
-    RunRequest request = RunOf(key, spec, journal);
-    if (change) change(request, *journal);
-    request.has_checkpoints = !journal->stored.empty();
-    scheduler_.Add(std::move(request));
-    return journal;
-  }
-
-  // The runs of the next turns, in order; each turn computes at most so many blocks.
-  std::vector<int64_t> Turns(int turns, uint64_t blocks) {
-    std::vector<int64_t> runs;
-    for (int turn = 0; turn < turns; ++turn) {
-      const auto lease = local_.Begin();
-      if (!lease) break;
-      runs.push_back(lease->run);
-      local_.End(*lease, blocks);
+    while (blocks-- > 0 && !lease.stop.stop_requested()) {
+      const std::optional<Block> block = fold.NextBlock();
+      if (!block) break;
+      LeaseReport report = {.chunks = fold.Add(*block, RunBlock(*lease.experiment, *block)),
+                            .partial = fold.partial(),
+                            .seconds = kSecondsOfABlock};
+      EXPECT_OK(scheduler_.Report(lease, std::move(report)));
     }
-    return runs;
   }
-
-  const std::unique_ptr<PointOpener> opener_;
-  Scheduler scheduler_;
-  SteppedExecutor local_;
 };
 
-class SchedulerTest : public testing::Test, public SteppedScheduler {
- protected:
-  explicit SchedulerTest(
-      std::unique_ptr<PointOpener> opener = std::make_unique<FactoryOpener>(FakeExperiments()),
-      const SchedulerOptions& options = {})
-      : SteppedScheduler(std::move(opener), options) {}
+struct SchedulerTest : testing::Test, SteppedScheduler {
+  using SteppedScheduler::SteppedScheduler;
 };
 
 }  // namespace ballpiston::server

@@ -28,7 +28,7 @@ TEST_F(SuspectsTest, SuspectsAreComputedAloneOneAfterTheOther) {
   EXPECT_THAT(cleared_, ElementsAre(2));
   EXPECT_THAT(Turns(3, 20), ElementsAre(3, 3, 3));
   EXPECT_THAT(cleared_, ElementsAre(2, 3));
-  local_.TakeAllTurns();
+  TakeAllTurns();
   for (const auto& journal : {innocent, first, second}) ExpectComplete(SixChunks(2), *journal);
   EXPECT_THAT(cleared_, ElementsAre(2, 3));
 }
@@ -36,25 +36,28 @@ TEST_F(SuspectsTest, SuspectsAreComputedAloneOneAfterTheOther) {
 // Otherwise a crash that another run causes would count against the suspect.
 TEST_F(SuspectsTest, ASuspectWaitsForTheEndOfTheOthersTurns) {
   Add(1, SixChunks(2));
-  const auto turn = local_.Begin();
+  const auto turn = Begin();
   ASSERT_TRUE(turn);
   Add(2, SixChunks(2), Suspected(2));
-  EXPECT_FALSE(local_.Begin());
-  local_.End(*turn, 1);
+  EXPECT_FALSE(Begin());
+  End(*turn, 1);
   EXPECT_THAT(Turns(1, 1), ElementsAre(2));
 }
 
-// Another point's chunk proves nothing, so other points wait.
+// Another point's chunk proves nothing, so other points wait. A finished point needs no chunk.
 TEST_F(SuspectsTest, TheChunksAreOfThePointsThatWereBeingComputed) {
   Add(1, SixChunks(5));
-  const auto suspect = Add(2, SixChunks(5), Suspected(2, {1, 3}));
+  const auto suspect = Add(2, SixChunks(5), [this](RunRequest& request, RecordingJournal& journal) {
+    Suspected(2, {0, 1, 3, 7})(request, journal);
+    request.finished[0] = true;
+  });
   EXPECT_THAT(Turns(2, 32), ElementsAre(2, 2));  // opens a point and computes a chunk
   EXPECT_THAT(cleared_, ElementsAre());
   EXPECT_THAT(Turns(2, 32), ElementsAre(2, 2));
   EXPECT_THAT(cleared_, ElementsAre(2));
   EXPECT_THAT(suspect->merged, UnorderedElementsAre(Pair(1, 64), Pair(3, 64)));
-  local_.TakeAllTurns();
-  ExpectComplete(SixChunks(5), *suspect);
+  TakeAllTurns();
+  EXPECT_EQ(suspect->finished.size(), 4u);
 }
 
 TEST_F(SuspectsTest, ARunStaysASuspectWhileTheDiskFails) {
@@ -71,11 +74,11 @@ TEST_F(SuspectsTest, TheOthersGoOnAfterTwoMinutes) {
   Add(1, SixChunks(2));
   Add(2, SixChunks(2), Suspected(2));
   EXPECT_THAT(Turns(1, 1), ElementsAre(2));  // opens a point
-  const auto turn = local_.Begin(), beside_it = local_.Begin();
-  local_.End(*turn, 1, 120);  // a minute
-  local_.End(*beside_it, 1, 59);
+  const auto turn = Begin(), beside_it = Begin();
+  End(*turn, 1, 120);  // a minute
+  End(*beside_it, 1, 59);
   EXPECT_THAT(undecided_, ElementsAre());
-  local_.End(*local_.Begin(), 1, 2);
+  End(*Begin(), 1, 2);
   EXPECT_THAT(undecided_, ElementsAre(2));
   EXPECT_THAT(cleared_, ElementsAre());
   EXPECT_THAT(Turns(1, 0), ElementsAre(1));
@@ -85,32 +88,20 @@ TEST_F(SuspectsTest, ACancelledSuspectLetsTheOthersGoOn) {
   const auto innocent = Add(1, SixChunks(2)), suspect = Add(2, SixChunks(2), Suspected(2));
   scheduler_.Cancel(2);
   EXPECT_EQ(suspect->ends, 1);
-  local_.TakeAllTurns();
+  TakeAllTurns();
   ExpectComplete(SixChunks(2), *innocent);
 }
 
-TEST_F(SuspectsTest, PointsThatAreFinishedNeedNoChunk) {
-  Add(1, SixChunks(2));
-  Add(2, SixChunks(2), [this](RunRequest& request, RecordingJournal& journal) {
-    Suspected(2, {0, 2, 7})(request, journal);
-    request.finished[0] = true;
-  });
-  EXPECT_THAT(Turns(2, 32), ElementsAre(2, 2));
-  EXPECT_THAT(cleared_, ElementsAre(2));
-}
-
 TEST_F(SuspectsTest, ExecutorsElsewherePause) {
-  RemoteExecutor remote(scheduler_, 10);
-  Add(1, SixChunks(2));
-  ASSERT_THAT(Turns(1, 0), ElementsAre(1));
-  const auto lease = remote.Take();
+  Opened(1, SixChunks(2));
+  const auto lease = TakeElsewhere(10);
   ASSERT_TRUE(lease);
   Add(2, SixChunks(2), Suspected(2));
-  EXPECT_FALSE(remote.Take());
-  EXPECT_THAT(remote.ReportAll(*lease), StatusIs(absl::StatusCode::kUnavailable));
+  EXPECT_FALSE(TakeElsewhere(10));
+  EXPECT_THAT(ReportAll(*lease), StatusIs(absl::StatusCode::kUnavailable));
   EXPECT_THAT(Turns(2, 32), ElementsAre(2, 2));
-  EXPECT_OK(remote.ReportAll(*lease));
-  EXPECT_TRUE(remote.Take());
+  EXPECT_OK(ReportAll(*lease));
+  EXPECT_TRUE(TakeElsewhere(10));
 }
 
 }  // namespace

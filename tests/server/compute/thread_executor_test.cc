@@ -1,6 +1,8 @@
 #include "server/compute/thread_executor.h"
 
+#include <ctime>
 #include <latch>
+#include <new>
 
 #include "core/gpu/device_orbits.h"
 #include "tests/core/billiard/each_target.h"
@@ -18,13 +20,9 @@ JournalPointer Ran(const ExperimentFactory& factory, const EnsembleSpec& spec, i
                    OrbitDevice* device = nullptr,
                    const std::shared_ptr<CrashRecord>& record = std::make_shared<CrashRecord>(),
                    JournalPointer journal = std::make_shared<RecordingJournal>()) {
-  FactoryOpener opener(factory);
-  Scheduler scheduler(opener, workers);
-  ThreadExecutor threads(scheduler, workers, kInfinity, record, device);
-  scheduler.Add(RunOf(1, spec, journal));
-  threads.Start();
-  EXPECT_OK(journal->AwaitEnd());
-  scheduler.Shutdown();
+  ThreadPool pool(workers, factory, record, device);
+  pool.scheduler().Add(RunOf(1, spec, journal));
+  journal->AwaitEnd();
   return journal;
 }
 
@@ -32,6 +30,43 @@ BlockResult ResultOf(const EnsembleSpec& spec, OrbitDevice* device, int workers 
   return Ran([](const EnsembleSpec& of, size_t i) { return PointExperiment::Create(of, i); }, spec,
              workers, device)
       ->finished.at(0);
+}
+
+TEST(ThreadExecutor, AnExceptionFailsItsRunOnly) {
+  ThreadPool pool(2,
+                  FakeExperimentsBySeed([](uint64_t seed, size_t, uint64_t block, std::stop_token) {
+                    if (seed == 1 && block == 5) throw std::runtime_error("the ball left the cell");
+                    if (seed == 2 && block == 5) throw std::bad_alloc();
+                  }));
+  std::map<uint64_t, JournalPointer> journals;
+  for (const uint64_t seed : {1, 2, 3}) {
+    journals[seed] = std::make_shared<RecordingJournal>();
+    pool.scheduler().Add(RunOf(static_cast<int64_t>(seed), FakeSpec(3, 20, seed), journals[seed]));
+  }
+  for (const auto& [seed, journal] : journals) journal->AwaitEnd();
+  EXPECT_THAT(*journals[1]->outcome,
+              StatusIs(absl::StatusCode::kInternal, HasSubstr("the ball left the cell")));
+  EXPECT_THAT(*journals[2]->outcome,
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("out of memory")));
+  ExpectComplete(FakeSpec(3, 20, 3), *journals[3]);
+}
+
+// The test reads the clock itself, in nanoseconds.
+TEST(ThreadExecutor, ProcessorTimeIsReportedOfOpeningsAndBlocksAlike) {
+  const auto nanoseconds = [] {
+    timespec time = {};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return 1'000'000'000 * time.tv_sec + time.tv_nsec;
+  };
+  const auto compute = [&] {
+    const int64_t begin = nanoseconds();
+    while (nanoseconds() - begin < 2'000'000) continue;
+  };
+  const ExperimentFactory slow = [&](const EnsembleSpec& spec, size_t index) {
+    compute();
+    return FakeExperiments([&](size_t, uint64_t, std::stop_token) { compute(); })(spec, index);
+  };
+  EXPECT_GE(Ran(slow, FakeSpec(1, 4))->work, 5 * 0.002);  // an opening and four blocks
 }
 
 // The test saves the record during a block and during a wait for the disk. It simulates that the

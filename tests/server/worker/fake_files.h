@@ -15,7 +15,6 @@ class FakeFiles : public SharedFiles {
   struct Folder {
     std::map<std::string, File> files;
     absl::Time now = absl::UnixEpoch();
-    double operations = 0;
     std::function<absl::Status(const char* operation, const std::string& path)> before = nullptr;
   };
   const std::shared_ptr<Folder> folder_;
@@ -26,8 +25,7 @@ class FakeFiles : public SharedFiles {
 
   // By path. A test may change it as another machine would.
   std::map<std::string, File>& files = folder_->files;
-  absl::Time& now = folder_->now;            // the folder's clock
-  double& operations = folder_->operations;  // that a metadata server of a network would see
+  absl::Time& now = folder_->now;  // the folder's clock
   // Called before each operation; if its result is not OK, the operation fails with it.
   std::function<absl::Status(const char* operation, const std::string& path)>& before =
       folder_->before;
@@ -48,7 +46,6 @@ class FakeFiles : public SharedFiles {
       const std::string name = path.substr(prefix.size());
       if (!name.starts_with('.')) names.push_back(name);
     }
-    operations += static_cast<double>(names.size()) / kNamesOfAnAnswer;
     return names;
   }
 
@@ -98,12 +95,9 @@ class FakeFiles : public SharedFiles {
   }
 
  private:
-  static constexpr double kNamesOfAnAnswer = 200;
-
   absl::Time Tick() { return now += absl::Nanoseconds(1); }
 
   absl::Status Begin(const char* operation, const std::string& path) {
-    ++operations;
     return before ? before(operation, path) : absl::OkStatus();
   }
 

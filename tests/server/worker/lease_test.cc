@@ -1,13 +1,8 @@
 // A lease on its way to a worker and back: its file and its record.
-#include "core/ensemble/experiment_kind.h"
-#include "core/ensemble/point_fold.h"
-#include "core/experiment/all_experiments.h"
 #include "core/model_choice/ladder.h"
 #include "server/convert/compressed.h"
-#include "server/convert/fold_record.h"
 #include "server/worker/lease_file.h"
 #include "tests/server/worker/sample_leases.h"
-#include "tests/support/preamble.h"
 
 namespace ballpiston::server {
 namespace {
@@ -18,18 +13,10 @@ auto IsDataLoss() { return StatusIs(absl::StatusCode::kDataLoss); }
 
 // ---- the file ----
 
-TEST(LeaseFile, NamesSayWhoseTheFileIs) {
-  const LeaseFileName name = {"0123-7", "node1-42-abcd"};
-  EXPECT_EQ(name.Todo(), "todo/0123-7");
-  EXPECT_EQ(name.Taken(), "taken/0123-7.node1-42-abcd");
-  EXPECT_EQ(name.Done(Outcome::kNoMemory), "done/0123-7.node1-42-abcd.no-memory");
-  const auto taken = ParseTaken("0123-7.node1-42-abcd");
-  ASSERT_TRUE(taken);
-  EXPECT_EQ(taken->Taken(), name.Taken());
-  const auto done = ParseDone("0123-7.node1-42-abcd.crashed");
+TEST(LeaseFile, ANameHasTheLeaseTheWorkerAndTheOutcome) {
+  const auto done = ParseDone("0123-7.node1-42-abcd.no-memory");
   ASSERT_TRUE(done);
-  EXPECT_EQ(done->worker, name.worker);
-  EXPECT_EQ(done->outcome, Outcome::kCrashed);
+  EXPECT_EQ(done->Done(*done->outcome), "done/0123-7.node1-42-abcd.no-memory");
   for (const char* other : {"", "a", ".a", "a.", "a.b.", "a.b.c", "a.b.c.finished", ".nfs0001"}) {
     EXPECT_FALSE(ParseDone(other)) << other;
   }
@@ -42,7 +29,7 @@ TEST(LeaseFile, DamageIsDataLoss) {
   const Lease lease = LeaseOf(SpecOf(kFirstHit, Model::kBilliard));
   std::vector<std::string> leases = {Compressed("\xff\xff")}, reports = leases;
   for (const double seconds : {-1.0, std::numeric_limits<double>::infinity(), kNan}) {
-    leases.push_back(BytesOf(RecordOf(lease, seconds)));
+    leases.push_back(FileOf(lease, seconds));
     reports.push_back(BytesOf(LeaseReport{.seconds = seconds}));
   }
   for (absl::string_view damaged : leases) EXPECT_THAT(TakeLease(damaged), IsDataLoss());
@@ -69,7 +56,7 @@ auto PlanAndBits(const PointExperiment& experiment) {
 }
 
 void ExpectComesBack(const Lease& lease) {
-  const std::string bytes = BytesOf(LeaseRecord(lease, "a server", 2.5));
+  const std::string bytes = FileOf(lease, 2.5);
   absl::string_view rest = bytes;
   ASSERT_OK_AND_ASSIGN(const LeaseFile file, TakeLease(rest));
   EXPECT_EQ(file.server, "a server");
@@ -99,17 +86,16 @@ TEST(LeaseRecord, EveryQuestionKeepsItsPlanAndItsBits) {
     spec.target.tolerance = 0.1;
     if (AnswerViolations(spec).empty()) ExpectComesBack(LeaseOf(spec));
   }
-  EnsembleSpec single = SpecOf(kEquilibrium, Model::kBilliard);
-  single.precision = Precision::kSingle;
-  ExpectComesBack(LeaseOf(single));
-  EnsembleSpec outside = SpecOf(kEnergyRelaxation, Model::kMarkov);  // of the billiard's domain
-  outside.grid[kDelta] = {1e-12};
-  ExpectComesBack(LeaseOf(outside));
-  EnsembleSpec named = SpecOf(kGasEquilibrium, Model::kBilliard, 150);
-  named.target.estimate = "conductivity";  // by which the worker judges a tolerance
-  ExpectComesBack(LeaseOf(named));
-  EnsembleSpec grid = SpecOf(kMarkovProperty, Model::kBilliard);
-  grid.grid[kDelta] = {0.1, 0.07, 1.0 / 30};
+  for (const char* question :
+       {"equilibrium samples=2000 model=billiard precision=single",
+        "energy-relaxation delta=1e-12 samples=2000 model=markov",  // outside the billiard's domain
+        // By this estimate the worker judges a tolerance.
+        "gas-equilibrium delta=0.19 samples=150 model=billiard estimate=conductivity"}) {
+    SCOPED_TRACE(question);
+    ExpectComesBack(LeaseOf(Asked(question)));
+  }
+  const EnsembleSpec grid =
+      Asked("markov-property delta=0.1,0.07,0.03 samples=2000 model=billiard");
   Lease part = LeaseOf(grid, 1, 2);
   part.experiment = PointExperiment::Create(grid, 2);
   ExpectComesBack(part);
@@ -130,8 +116,6 @@ TEST(LeaseRecord, TheJumpProcessInSinglePrecisionComesBack) {
   lease.end = lease.experiment->plan().chunks();
   ExpectComesBack(lease);
 }
-
-storage::Lease GoodRecord() { return RecordOf(LeaseOf(SpecOf(kFirstHit, Model::kBilliard))); }
 
 TEST(LeaseRecord, AnImpossibleQuestionIsDataLoss) {
   using Record = storage::Lease;
@@ -163,9 +147,10 @@ TEST(LeaseRecord, AnImpossibleQuestionIsDataLoss) {
       [](Record& r) { r.mutable_question()->set_estimate("conductivity"); },
       [](Record& r) { r.mutable_question()->set_tolerance(kNan); },
   };
-  EXPECT_OK(LeaseOfRecord(GoodRecord()));
+  const Record good = LeaseRecord(LeaseOf(SpecOf(kFirstHit, Model::kBilliard)), "a server", 20);
+  EXPECT_OK(LeaseOfRecord(good));
   for (size_t i = 0; i < harms.size(); ++i) {
-    Record record = GoodRecord();
+    Record record = good;
     harms[i](record);
     EXPECT_THAT(LeaseOfRecord(record), IsDataLoss()) << i;
   }

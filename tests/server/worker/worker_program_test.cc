@@ -2,11 +2,8 @@
 #include <sys/syscall.h>
 
 #include "core/engine_version.h"
-#include "core/experiment/all_experiments.h"
-#include "core/gas/gas_shape.h"
 #include "server/worker/shared_files.h"
 #include "tests/server/worker/sample_leases.h"
-#include "tests/support/preamble.h"
 #include "tests/support/process.h"
 
 namespace ballpiston::server {
@@ -24,8 +21,7 @@ class WorkerProgramTest : public testing::Test {
   }
 
   void Lay(const std::string& name, const Lease& lease, double touch_seconds = 20) {
-    const std::string bytes = BytesOf(RecordOf(lease, touch_seconds));
-    ASSERT_OK(files_.Create("todo/" + name, bytes).status());
+    ASSERT_OK(files_.Create("todo/" + name, FileOf(lease, touch_seconds)).status());
   }
 
   ProcessOptions Command(std::vector<std::string> further = {}) const {
@@ -112,7 +108,7 @@ TEST_F(WorkerProgramTest, ASignalledWorkerGivesItsLeaseBackWithItsChunks) {
     for (int samples = 40'000;; samples *= 2) {
       ASSERT_LT(samples, 10'000'000) << "the worker does not end at a signal";
       const Lease lease = LeaseOf(SpecOf(kEquilibrium, Model::kBilliardReference, samples));
-      const size_t bytes = BytesOf(RecordOf(lease, 1e-9)).size();
+      const size_t bytes = FileOf(lease, 1e-9).size();
       Lay("a", lease, 1e-9);
       Process worker(Command());
       AwaitThat([&] { return !Done().empty() || LargestIn("taken") > bytes; });
