@@ -241,6 +241,11 @@ def test_the_counts_of_failures_are_read_from_the_report() -> None:
     }
 
 
+def test_a_rate_of_failures_fits_into_its_cell() -> None:
+    found = [stability.rate_text(rate) for rate in (0, 4e-4, 0.12, 35, 7966, 34271)]
+    assert found == ["0", "4e-4", "0.12", "35", "7966", "3e4"]
+
+
 MEASUREMENTS = """rho,delta,epsilon,method,time_step,quantity,samples,wall_hits,work_seconds,value,\
 statistical_error,own_error,bias_resolved
 0.53,0.1,0.125,fixed-step,0.1,mean-free-time,100,2000,0.001,0.4,0.06,0.08,1

@@ -117,7 +117,7 @@ def _draw_cells(axes: Any, part: Table, line: int) -> None:
 
 
 def rate_text(rate: float) -> str:
-    """Such as 0, 4e-4, 0.12 or 35."""
-    if 0 < rate < 0.01:
-        return f"{rate:.0e}".replace("e-0", "e-")
+    """Such as 0, 4e-4, 0.12, 35 or 3e4."""
+    if 0 < rate < 0.01 or rate >= 9999.5:
+        return f"{rate:.0e}".replace("e-0", "e-").replace("e+0", "e")
     return f"{rate:.2g}" if rate < 10 else f"{rate:.0f}"
