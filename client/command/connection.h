@@ -1,5 +1,6 @@
-// The server and the jobs that a verb uses. The server is that of --server, else of
-// BALLPISTON_SERVER or the config file, else the private server (library/local_server.h).
+// The server and the jobs that a verb uses. The verb uses the server of --server, otherwise the
+// server of BALLPISTON_SERVER or of the config file, otherwise the private server
+// (library/local_server.h).
 //
 // A Unix socket, such as the private server's, uses neither TLS nor tokens. Flags of TLS and tokens
 // are then an error; the same settings in the environment and the config file are ignored.
@@ -56,9 +57,10 @@ inline const JobStates kEndedStates = {v1::EnsembleJob::SUCCEEDED, v1::EnsembleJ
 using VerbOfJobs =
     std::function<VerbResult(const Connection&, const std::vector<v1::EnsembleJob>&)>;
 
-// The same with jobs: those that are named (only `name` is set); with --label those that have all
-// these labels and one of the states (empty: any), newest first. INVALID_ARGUMENT if there are
-// neither names nor labels, or both. NOT_FOUND if no job has the labels.
+// Connects and runs `verb` with jobs. These are the named jobs (only `name` is set) or, with
+// --label, the jobs that have all these labels and one of `states` (empty: any state), newest
+// first. INVALID_ARGUMENT if there are neither names nor labels, or both. NOT_FOUND if no job has
+// the labels.
 VerbResult WithJobs(const Options& options, const Terminal& terminal, const JobStates& states,
                     const VerbOfJobs& verb);
 

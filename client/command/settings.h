@@ -1,5 +1,5 @@
-// The texts of a verb's flags and arguments. A flag that the command line lacks has the value of
-// its environment variable, else that of the config file.
+// The texts of a verb's flags and arguments. A flag that is not on the command line takes its value
+// from its environment variable, otherwise from the config file.
 //
 // The config file has CLI11's form (TOML). FLAG = VALUE applies to every verb that has the flag;
 // below [VERB] it applies only to that verb ([server.start] for server start). CLI11's own config
@@ -17,9 +17,9 @@ namespace ballpiston::client {
 
 // The words after the name of a verb, sorted into flags and arguments.
 struct SortedWords {
-  std::map<const Flag*, std::string> flags;  // with their values; those of a repeatable one joined
+  std::map<const Flag*, std::string> flags;  // values; those of a repeatable flag are joined
   std::vector<std::string> arguments;  // all other words, also flags that the verb does not have
-  std::string unknown_flag;            // the first of these
+  std::string unknown_flag;            // the first flag that the verb does not have
   const Flag* flag_without_value = nullptr;  // the first one: --rho at the end, or --rho=
   const Flag* repeated_flag = nullptr;       // the first one that must not be repeated
   bool has_help = false;                     // --help or -h

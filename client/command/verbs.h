@@ -31,8 +31,8 @@ VerbFunction ServerStart, ServerStop, ServerAddress, ServerStatus, ServerToken, 
     ServerCheck;
 VerbFunction Help, Complete;
 
-// What Web does in ballpiston-web (web/web_server.cc); null elsewhere: there Web starts
-// ballpiston-web.
+// The function that Web calls in ballpiston-web (web/web_server.cc). In ballpiston the pointer is
+// null, and Web starts ballpiston-web.
 inline VerbFunction* serve_page = nullptr;
 
 // The names of the installed figures.

@@ -74,10 +74,12 @@ class NewFile {
  private:
   int Open();
 
-  const std::string flag_, path_;
-  std::filesystem::path file_;         // `path_` without symbolic links
-  std::filesystem::path part_;         // hidden beside it, until Keep
-  const int descriptor_, open_error_;  // the second one is errno, or 0
+  const std::string flag_;
+  const std::string path_;
+  std::filesystem::path file_;  // `path_` without symbolic links
+  std::filesystem::path part_;  // hidden beside it, until Keep
+  const int descriptor_;
+  const int open_error_;  // errno, or 0
   FileStream out_;
 };
 

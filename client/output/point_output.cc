@@ -101,8 +101,9 @@ std::string ResultHeading(const v1::EnsembleJob& job, const std::set<std::string
 
 void PrintResultTable(const v1::EnsembleJob& job, const std::vector<v1::PointResult>& points,
                       std::ostream& out) {
-  std::set<std::string> models, optional = OptionalParameters();
+  std::set<std::string> models;
   for (const v1::PointResult& point : points) models.insert(Spelling(point.model()));
+  std::set<std::string> optional = OptionalParameters();
   optional.insert(kExtraColumns.begin(), kExtraColumns.end());
   optional.insert("model");
   TextTable table(Joined({ParametersInTable(),

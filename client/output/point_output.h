@@ -1,4 +1,4 @@
-// Prints what there is for each point of a specification, in one of the formats: results and plans.
+// Prints the results and the plans of the points of a specification, in one of the formats.
 #pragma once
 
 #include <ostream>

@@ -12,7 +12,8 @@
 //   2. PowersAreWithinTheirBound.
 //   3. ExponentialsAreWithinTheirBound.
 //   4. LogarithmsAreWithinTheirBound.
-//   5. AnglesOnAxesAndDiagonals, PowersOfOne and ExponentialOfZeroAndLogarithmOfOne are exact.
+//   5. AnglesOnAxesAndDiagonals are exact.
+//   6. SimpleValuesAreExact, of powers, exponentials and logarithms.
 //
 // Pure functions: safe from any thread.
 #pragma once

@@ -23,10 +23,10 @@
 // energy. Domain: ep and ep_out in [0, 1/2].
 //
 // Properties, each with the test that bears its name:
-//   1. AccurateAtRandomEnergies, AccurateWhereTheBallKeepsLittleEnergy (ep + ep_out -> 1/2):
-//      relative error of W below kKernelRelativeError.
-//   2. MomentsAreAccurateForEveryEnergy: relative error below kKernelMomentsRelativeError; and
-//      CurrentIsAccurateThroughItsZero.
+//   1. AccurateAtRandomEnergies: relative error of W below kKernelRelativeError, also where the
+//      ball keeps little energy (ep + ep_out -> 1/2).
+//   2. MomentsAreAccurateForEveryEnergy: relative error of f, j and h below
+//      kKernelMomentsRelativeError, also where j passes through its zero.
 //   3. DistributionIsAccurateAtRandomEnergies: relative error of F, and of f computed with it,
 //      below kKernelDistributionRelativeError, also where the ball keeps little energy.
 //   4. DistributionRisesFromZeroToOne: F reaches 1 at ep_out = eb, and falls nowhere except by

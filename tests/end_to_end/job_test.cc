@@ -36,9 +36,10 @@ TEST_F(JobTest, TheQuestionOfASavedFileGivesTheSamePointsOnAnotherServer) {
   EXPECT_EQ(PointsOf(Contents(File("b.json"))), PointsOf(Contents(File("a.json"))));
 }
 
-// Before a job is submitted.
+// The client finds the error before it submits a job.
 TEST_F(JobTest, MissingProgramsAndPackagesOfPythonAreNamed) {
-  const std::string modules = File("modules"), arrays = File("a.npz");
+  const std::string modules = File("modules");
+  const std::string arrays = File("a.npz");
   fs::create_directory(modules);
   WriteFile(modules + "/matplotlib.py", "raise ModuleNotFoundError(name='matplotlib')\n");
   const Words save = Joined({{"run"}, kQuickQuestion, {"--save", arrays}});

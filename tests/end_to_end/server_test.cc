@@ -160,7 +160,7 @@ TEST_F(ServerTest, StopIgnoresProcessesThatDoNotUseTheFolder) {
   EXPECT_EQ(kill(stranger.pid(), 0), 0);
 }
 
-// What is in the pipe.
+// Reads everything that is in the pipe.
 std::string ReadAll(int pipe) {
   std::string text;
   char block[4096];

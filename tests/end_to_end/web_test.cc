@@ -43,7 +43,8 @@ class WebTest : public ::testing::Test {
   TestServer server_;
   std::optional<Process> web_;
   std::optional<httplib::Client> http_;
-  std::string host_, address_;  // http://ADDRESS, ADDRESS
+  std::string host_;     // http://ADDRESS
+  std::string address_;  // ADDRESS
   std::string token_;
 };
 
@@ -151,7 +152,8 @@ TEST_F(WebTest, CallsNeedTheTokenAndThisPagesOriginAndHost) {
 
 // The body never arrives. The answer does, and then the connection ends.
 TEST_F(WebTest, ARefusedRequestIsAnsweredBeforeItsBodyIsRead) {
-  const std::string host = "Host: " + address_ + "\r\n", length = "Content-Length: 9\r\n";
+  const std::string host = "Host: " + address_ + "\r\n";
+  const std::string length = "Content-Length: 9\r\n";
   const std::string token = "Authorization: Bearer " + token_ + "\r\n";
   const std::pair<std::string, int> rows[] = {
       {"Host: evil.example\r\n" + token + length, 403},

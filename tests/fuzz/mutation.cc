@@ -63,7 +63,7 @@ int64_t Integer(Dice& dice, int64_t now) {
   }
 }
 
-// `now` and the result: in quotes, with escapes.
+// A new text. Both `now` and the result are in quotes and escaped.
 std::string Text(Dice& dice, const std::string& now) {
   std::string text;
   if (dice.OneIn(3)) {

@@ -68,7 +68,7 @@ TEST(Seeds, AFileThatCannotBeReadIsAnError) {
   EXPECT_THROW(SeedsOf({"text", nullptr}, folder.path()), std::runtime_error);
 }
 
-TEST(Seeds, WhatMustBeRefusedIs) {
+TEST(Seeds, TheRefusedSeedHasSixteenViolations) {
   const auto request = FromText<v1::CreateEnsembleJobRequest>(
       Contents(kSeeds + "/create_request/refused.textproto"));
   EXPECT_THAT(server::CheckSpec(request.spec()).violations, SizeIs(16));
@@ -76,7 +76,9 @@ TEST(Seeds, WhatMustBeRefusedIs) {
 
 TEST(Mutation, DrawsNumbersAndTextsOfEveryKind) {
   Dice dice(1);
-  bool is_large = false, has_nul = false, has_line = false;
+  bool is_large = false;
+  bool has_nul = false;
+  bool has_line = false;
   storage::ResumeToken token;
   for (int i = 0; i < 10'000; ++i) {
     MutateMessage(dice, token);

@@ -17,7 +17,7 @@ const v1::Estimate* Find(const v1::PointResult& answer, const std::string& name)
   return nullptr;
 }
 
-using Differences = std::map<std::string, std::string>;  // as Disagreements returns
+using Differences = std::map<std::string, std::string>;  // their texts, by what was compared
 
 void Compare(const std::string& what, double value, double other, double permitted,
              Differences& found) {

@@ -90,7 +90,8 @@ void CheckAnswer(const v1::EnsembleSpec& spec, const v1::PointResult& result);
 // At the first point of the question. `most_seconds`: for each model, on `machine`.
 void CheckAgreement(const EnsembleSpec& spec, const Machine& machine, double most_seconds);
 
-// The comparisons alone, of one answer by each model: the numbers that differ, by what they are.
+// Compares one answer of each model. Returns a description of each difference, by the name of the
+// compared numbers.
 std::map<std::string, std::string> Disagreements(const std::vector<v1::PointResult>& answers);
 
 }  // namespace ballpiston::questions

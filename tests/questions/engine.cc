@@ -68,7 +68,7 @@ void AnswerPoint(const v1::EnsembleSpec& question, EnsembleSpec spec, size_t ind
 
 // ---- child processes ----
 
-// The file has the outcome; or the broken rule, and in the next lines what is wrong.
+// Writes the outcome to the file, or the broken rule in the first line and its description below.
 [[noreturn]] void Report(const std::function<std::string()>& ask, const std::string& file) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const rlimit limit = {kMostProcessorSeconds, kMostProcessorSeconds + 1}, no_core = {0, 0};

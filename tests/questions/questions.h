@@ -1,6 +1,6 @@
-// Random questions to the service, and their answers by the engine in this process, by a process of
-// its own, which may crash or never end, or by a real server. Whoever answers returns the outcome
-// (answered, refused, stopped, ...), and throws Violation if a rule is broken (checks.h).
+// Random questions to the service. The engine answers them in this process or in a child process,
+// which may crash or never end. A real server answers them, too. Each of the three returns the
+// outcome (answered, refused, stopped, ...), and throws Violation if a rule is broken (checks.h).
 #pragma once
 
 #include "core/ensemble/point_experiment.h"
@@ -22,8 +22,8 @@ v1::EnsembleSpec Draw(uint64_t seed, uint64_t number, double most_seconds);
 std::string AskEngine(const v1::EnsembleSpec& question, double most_seconds);
 
 // The outcome of `ask`, which runs in a forked process and must not start threads. If the process
-// dies or reports nothing, the broken rule is "crash"; if it takes more than kMostProcessorSeconds,
-// kEndCheck.
+// dies or reports nothing, the broken rule is "crash". If it takes more than kMostProcessorSeconds,
+// the broken rule is kEndCheck.
 std::string InChild(const std::function<std::string()>& ask);
 
 // Returns a function that asks ballpistond, a process on a Unix socket in a temporary folder. The

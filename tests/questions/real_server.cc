@@ -101,7 +101,7 @@ struct RunningServer {
   const client::Client client{*client::OpenChannel(process.address()), absl::FromChrono(kPatience)};
 };
 
-// Throws again what is broken, but if the server has died, its death.
+// Throws the violation again. If the server has died, throws a violation that reports the death.
 [[noreturn]] void Rethrow(const Violation& broken, std::unique_ptr<RunningServer>& server) {
   // A call may fail a little before the process has ended.
   const std::chrono::milliseconds patience(broken.check == kCallCheck ? 5000 : 0);

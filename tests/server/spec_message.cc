@@ -25,7 +25,7 @@ void Fill(const Target& target, v1::Target& message) {
   if (target.samples) message.set_samples(*target.samples);
   if (target.collisions) message.set_collisions(*target.collisions);
   if (target.tolerance) message.set_tolerance(*target.tolerance);
-  if (target.budget_seconds) {  // below 10^6 s: it fits
+  if (target.budget_seconds) {  // below 10^6 s, so it fits into an int64 of nanoseconds
     *message.mutable_budget() = google::protobuf::util::TimeUtil::NanosecondsToDuration(
         std::llround(1e9 * *target.budget_seconds));
   }

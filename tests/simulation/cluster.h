@@ -126,7 +126,7 @@ class SimulatedCluster {
     return machine_.Chance(0.002) ? EndOfWork::kAfterChunk : EndOfWork::kNotYet;
   }
 
-  // With a toy experiment.
+  // Reads a lease and gives it a toy experiment.
   absl::StatusOr<LeaseFile> ReadLease(absl::string_view& bytes, std::function<void()> crash) const {
     absl::StatusOr<LeaseFile> file = TakeLease(bytes);
     if (!file.ok()) return file;

@@ -42,7 +42,7 @@ void Machine::Run(std::function<void()> main) {
   current = nullptr;
   if (!is_stuck_) return threads_.clear();
   new auto(std::move(threads_));  // leaked: they wait for ever
-  throw std::runtime_error("all threads wait, and none for a time");
+  throw std::runtime_error("all threads wait, and no wait has a time limit");
 }
 
 Machine::SimulatedThread* Machine::Start(std::function<void()> run) {

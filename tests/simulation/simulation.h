@@ -146,7 +146,8 @@ class Simulation : World {
     disk_->Refuse(FaultDisk::Refusal::kWriteError);
   }
 
-  // Some operations of the disk later, so mostly within a commit or a checkpoint.
+  // The disk hangs after some operations. Then the server is usually within a commit or a
+  // checkpoint.
   void AwaitMiddleOfAWrite() {
     BeginTrouble("the disk hangs in an operation");
     disk_->SetBeforeOperation([this, left = machine.Below(kMostOperations)]() mutable {

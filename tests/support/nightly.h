@@ -14,7 +14,8 @@ namespace ballpiston {
 
 inline bool IsNightly() { return std::getenv("BALLPISTON_NIGHTLY") != nullptr; }
 
-// Of a test with variables of its own. Throws std::invalid_argument unless it is a whole number.
+// The number in a test's own environment variable; empty if the variable is not set. Throws
+// std::invalid_argument if its value is not a whole number.
 inline std::optional<uint64_t> NumberFromEnvironment(const char* name) {
   const char* const text = std::getenv(name);
   if (text == nullptr) return std::nullopt;

@@ -68,7 +68,8 @@ class Process {
   std::optional<int> exit_code_;
   // Files in memory: the program never waits for a reader. A terminal has one, and what the program
   // writes is copied into it whenever the test looks.
-  int out_, err_;
+  int out_;
+  int err_;
   int terminal_ = -1;
 };
 

@@ -133,9 +133,10 @@ class Token:
 
 
 def user_folder(variable: str, default: str) -> Path:
-    """The user's folder `ballpiston`, of tokens or of the config file: in the folder that the XDG
-    variable names (a relative path is ignored), else in `default` below the home folder: HOME if it
-    is absolute, else the user's entry. Raises OSError: there is no entry."""
+    """The user's folder `ballpiston`. It is in the folder that the XDG variable names if this path
+    is absolute, otherwise in `default` below the home folder. The home folder is HOME if it is an
+    absolute path, otherwise that of the user's entry in the password database. Raises OSError: the
+    user has no entry."""
     root = os.environ.get(variable, "")
     if not root.startswith("/"):
         home = os.environ.get("HOME", "")

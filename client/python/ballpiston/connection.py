@@ -208,7 +208,7 @@ class Connection:
 
 def connection_hint(address: str, security: ChannelSecurity, message: str) -> str:
     """What to try, on a line of its own, after an error with this text; empty if nothing is known.
-    The texts of gRPC 1.51 and OpenSSL 3 do not say it."""
+    The messages of gRPC 1.51 and OpenSSL 3 do not say what the user can do."""
     kind = "socket" if is_socket(address) else "tls" if security.has_tls else "plain"
     known = f"in {security.ca}" if security.ca else "that this system knows"
     for of, pattern, hint in _HINTS:

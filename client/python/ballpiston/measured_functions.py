@@ -1,5 +1,4 @@
-"""What a point has beside estimates: histograms, and curves, which are functions of time or of the
-position in a gas."""
+"""Histograms and curves of a point. A curve is a function of time or of the position in a gas."""
 
 from collections import defaultdict
 from collections.abc import Sequence

@@ -42,9 +42,9 @@ def private_address(program: str) -> str:
 
 
 def find_program() -> str:
-    """The path of the program `ballpiston`: what BALLPISTON_PROGRAM names, else that in PREFIX/bin
-    for a package in PREFIX/lib/python3/dist-packages or, in a folder of a build, in PREFIX/python,
-    else the one in PATH. Raises NoPrivateServer: there is none."""
+    """The path of the program `ballpiston`: from BALLPISTON_PROGRAM, otherwise in PREFIX/bin,
+    otherwise in PATH. The package is in PREFIX/lib/python3/dist-packages, or in PREFIX/python of a
+    build folder. Raises NoPrivateServer: there is none."""
     if named := os.environ.get("BALLPISTON_PROGRAM"):
         return named
     beside_package = [up / "bin" / _PROGRAM for up in Path(__file__).resolve().parents[2:5:2]]

@@ -22,7 +22,7 @@ class SettingsTest : public ::testing::Test {
   const EmptyHome home_;
 };
 
-TEST_F(SettingsTest, RelativeHomeIsReplacedByTheUsersEntry) {
+TEST_F(SettingsTest, ARelativeHomeIsReplacedByTheUsersHomeFolder) {
   const std::string home = std::filesystem::relative(home_.File(""));
   std::filesystem::create_directories(home + "/.config/ballpiston");
   WriteFile(home + "/.config/ballpiston/config.toml", "");
@@ -44,8 +44,8 @@ TEST_F(SettingsTest, AFlagReplacesWeakerSourcesOfItsRivals) {
   EXPECT_EQ(StyleOf(quiet), ProgressStyle::kNone);
 }
 
-// Only of one source do a tolerance and a budget go together.
-TEST_F(SettingsTest, ATargetReplacesThatOfAWeakerSource) {
+// A tolerance and a budget go together only if they are of one source.
+TEST_F(SettingsTest, ATargetReplacesTheTargetOfAWeakerSource) {
   home_.WriteConfig("[run]\nsamples = 5\n");
   EXPECT_EQ(Target("run first-hit --budget 3"), "budget { seconds: 3 }");
   home_.WriteConfig("[run]\ntolerance = 0.1\nbudget = 3\n");
@@ -61,7 +61,7 @@ TEST_F(SettingsTest, TargetsOfOneSourceThatExcludeEachOtherAreRefused) {
                        HasSubstr("--samples and --collisions in the config file exclude")));
 }
 
-TEST_F(SettingsTest, WhatIsOffOrReplacedReplacesNothing) {
+TEST_F(SettingsTest, AFlagThatIsOffOrReplacedReplacesNoOtherFlag) {
   home_.WriteConfig("verbose = true\nprogress = \"json\"\n");
   EXPECT_EQ(Read("watch abc --quiet=false").verbosity, Verbosity::kVerbose);
   const ScopedVariable quiet("BALLPISTON_QUIET", "1");

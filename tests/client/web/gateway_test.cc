@@ -27,7 +27,7 @@ TEST(ConnectProtocol, OpensOneWholeEnvelope) {
   }
 }
 
-// The protocol's table of codes. It spells one of their names differently.
+// The protocol's table of codes. The protocol writes `canceled`, gRPC `CANCELLED`.
 TEST(ConnectProtocol, CodesHaveTheProtocolsStatusesAndNames) {
   using Code = absl::StatusCode;
   const std::map<int, std::vector<Code>> table = {

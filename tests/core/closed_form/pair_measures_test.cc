@@ -68,7 +68,7 @@ TEST(PairMeasures, AccurateForEveryGeometry) {
 
 // ---- mean_free_time.h ----
 
-// Also where rare collisions see a wedge, of the area sqrt(2) lambda delta^2.
+// For small delta the collision surface is a wedge of the area sqrt(2) lambda delta^2.
 TEST(MeanFreeTime, RareLimitRateIsTheLimitOfTheRate) {
   for (double rho : {0.501, kPaperRho, 0.6, 0.65, 0.7}) {
     for (double fraction : {1e-3, 1e-6, 1e-9, 1e-100}) {

@@ -31,7 +31,7 @@ size_t OrbitsIn(const std::vector<CollisionRecord>& records) {
   return orbits;
 }
 
-TEST(CollisionSampler, ReturnsAndCollisionsInEquilibriumAreThoseThatTheJobFolds) {
+TEST(CollisionSampler, TheSamplerHasTheCollisionsThatTheJobFolds) {
   for (const std::string question :
        {"first-hit delta=0.2 samples=20000 model=billiard_reference seed=3",
         "equilibrium delta=0.2 collisions=20000 model=billiard"}) {

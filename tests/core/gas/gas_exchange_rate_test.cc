@@ -28,7 +28,7 @@ TEST(GasExchangeRate, RingsAreTracesOfTheirTransferOperator) {
   }
 }
 
-// The factor is 1 if no piston takes area from a cell, z = 0. No geometry has a z above 0.02.
+// For z = 0 no piston takes area from a cell, and the factor is 1. No geometry has a z above 0.02.
 TEST(GasExchangeRate, ToriCountEveryConfiguration) {
   for (const double z : {0.0, 1e-6, 1e-3, 0.01, 0.02}) {
     for (int columns = 1; columns <= 7; ++columns) {

@@ -11,8 +11,8 @@
 namespace ballpiston {
 namespace {
 
-// Orbits of equilibrium, and every eighth from a ball at rest within the piston's reach. Without a
-// device the lanes of the processor compute them.
+// Orbits that start in equilibrium. Every eighth orbit starts with a ball at rest within the
+// piston's reach. Without a device the lanes of the processor compute the orbits.
 OrbitOptions OrbitsOf(const PairGeometry& geometry, OrbitDevice* device) {
   const auto start = [geometry](uint64_t orbit) -> PairState {
     if (orbit % 8 != 0) return StartInEquilibrium(geometry, orbit);

@@ -147,7 +147,7 @@ TEST_F(LiveWatchers, AllGetTheEndAndHealthAnswersWithAFullQueue) {
   }
 }
 
-TEST_F(LiveWatchers, DoNotDelayTheStopOfAServerThatWouldWaitAnHour) {
+TEST_F(LiveWatchers, LetAServerStopBeforeItsDrainTime) {
   Start(3600);
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, server_->NewClient().Create(Endless()));
   Attach(Size(100, 1000), job.name());

@@ -2,7 +2,7 @@
 //
 // By default each test takes five seconds of one core or less, except the two tests Kills, which
 // start a server for each failpoint. BALLPISTON_TORTURE=1 in the environment (`make torture`)
-// selects the full size, 0.1 a tenth.
+// selects the full size; BALLPISTON_TORTURE=0.1 selects a tenth.
 #pragma once
 
 #include <grpcpp/grpcpp.h>

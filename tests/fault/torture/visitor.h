@@ -103,7 +103,7 @@ class Visitor {
     return dice_.Chance(0.5) ? Fetch(job) : Get(job);
   }
 
-  // Whether the answer is OK. Another one is a broken promise.
+  // Whether the answer is OK. Reports any other answer as a broken promise.
   template <typename Result>
   bool IsAnswered(const OwnJob& job, const char* call, const Result& answer) {
     const absl::Status status = StatusOf(answer);

@@ -216,8 +216,8 @@ TEST_F(AcceptanceTest, AStoredAnswerKeepsItsLabelsAndIsUsedOnlyIfTheyFit) {
   EXPECT_EQ(Id(kAnn, many), third);
 }
 
-// Otherwise the store would grow each time a question is asked again. Answers are only for their
-// engine.
+// Otherwise the store would grow with every repeated question. A stored answer is valid for one
+// engine version only.
 TEST_F(AcceptanceTest, OnlyTheRequestThatMadeTheJobIsStored) {
   const std::string id = Answered(kAnn, CreateRequest(Question(), kUuid));
   EXPECT_EQ(Id(kAnn, CreateRequest(Question(), kOtherUuid)), id);

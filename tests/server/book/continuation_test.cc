@@ -43,8 +43,9 @@ TEST_F(ContinuationTest, AContinuedJobHasTheBytesOfOneLongRun) {
   for (const auto& [question, earlier, later] : rows) {
     SCOPED_TRACE(later);
     Start();
-    const v1::EnsembleJob first = Ask(question, earlier), longer = Ask(question, later),
-                          at_once = Ask(question, later, /*fresh=*/true);
+    const v1::EnsembleJob first = Ask(question, earlier);
+    const v1::EnsembleJob longer = Ask(question, later);
+    const v1::EnsembleJob at_once = Ask(question, later, /*fresh=*/true);
     EXPECT_EQ(longer.continues(), first.name());
     EXPECT_EQ(at_once.continues(), "");
     EXPECT_EQ(server_->ResultBytes(longer.name()), server_->ResultBytes(at_once.name()));

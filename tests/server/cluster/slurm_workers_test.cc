@@ -74,7 +74,7 @@ TEST_F(SlurmWorkersTest, AsManyWorkersAreSubmittedAsThereAreLeases) {
   EXPECT_EQ(workers.Status().problem, "");
 }
 
-TEST_F(SlurmWorkersTest, NoMoreWorkersThanTheFlagSaysInArraysThatTheClusterTakes) {
+TEST_F(SlurmWorkersTest, TheFlagLimitsTheWorkersAndTheClusterLimitsTheArrays) {
   work_ = {.waiting_leases = 100};
   New({.workers = 10, .max_array_size = 4}).Look();
   EXPECT_THAT(slurm_.submitted, ElementsAre(4, 4, 2));

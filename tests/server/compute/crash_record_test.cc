@@ -18,8 +18,8 @@ class CrashRecordTest : public testing::Test {
   // Points that are being computed. Without a point, the run is being examined.
   using Turns = std::map<RunName, std::set<size_t>>;
 
-  // A process begins, computes, and dies of the signal in the last turn. What is in the record at
-  // this moment stays.
+  // A process starts, computes, and is killed by the signal while it computes the turns. The file
+  // of the record keeps its contents of this moment.
   void LiveAndDie(const Turns& turns, int signal, const OutOfMemoryKills& at_start = {}) {
     CrashRecord record(folder_.path(), at_start);
     std::vector<std::unique_ptr<CrashRecord::Entry>> computing;

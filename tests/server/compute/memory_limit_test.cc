@@ -130,9 +130,9 @@ TEST_F(MemoryLimitTest, APrincipalLeavesMemoryToTheOthers) {
   for (const Lease& lease : leases) End(lease, 0);
 }
 
-// Points of 520 MB, of which some 500 MB stay while they wait. When the executor elsewhere is
-// hungry, 32 are opened ahead, or as many as the memory permits.
-TEST(MemoryLimit, PointsAreOpenedAheadForAHungryExecutorElsewhereWithinTheLimit) {
+// Points of 520 MB, of which some 500 MB stay while they wait. When the remote executor finds no
+// work, 32 points are opened ahead, or as many as the memory permits.
+TEST(MemoryLimit, PointsAreOpenedAheadForARemoteExecutorWithinTheLimit) {
   for (const auto& [limit, ahead] : {std::pair(kInfinity, 32u), {4e9, 7u}}) {
     SteppedScheduler stepped(std::make_unique<SeedsAreBytes>(), {.memory_limit = limit});
     EnsembleSpec spec = SixChunks(100);

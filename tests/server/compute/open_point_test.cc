@@ -122,9 +122,9 @@ TEST(OpenPoint, ALongChunkIsForLocalExecutors) {
   }
 }
 
-// With a tolerance, the chunks that are expected are leased, and beyond these an eighth of what is
-// merged, rounded up to whole chunks. The chunks of `single` have one sample each.
-TEST(OpenPoint, BeyondTheExpectedEndAnEighthIsLeased) {
+// A point with a tolerance leases the chunks that it expects to need. Beyond these it leases an
+// eighth of the merged samples, rounded up to whole chunks. Each chunk of `single` has one sample.
+TEST(OpenPoint, ALeaseEndsAnEighthBeyondTheExpectedEnd) {
   EnsembleSpec fake = FakeSpec(1, 0);
   fake.target = {.tolerance = 0.05};
   using Experiment = std::shared_ptr<const PointExperiment>;

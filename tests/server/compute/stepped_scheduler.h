@@ -1,5 +1,5 @@
-// A scheduler without threads that a test drives step by step, so that every schedule can be
-// repeated, its runs of fake experiments, and a journal that remembers everything.
+// A scheduler without threads, its runs of fake experiments, and a journal that records everything.
+// A test drives the scheduler step by step, so every schedule can be repeated.
 #pragma once
 
 #include "server/compute/run_journal.h"

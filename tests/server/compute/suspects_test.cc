@@ -22,8 +22,9 @@ class SuspectsTest : public SchedulerTest {
 
 // The first chunk of a point has 32 blocks.
 TEST_F(SuspectsTest, SuspectsAreComputedAloneOneAfterTheOther) {
-  const auto innocent = Add(1, SixChunks(2)), first = Add(2, SixChunks(2), Suspected(2)),
-             second = Add(3, SixChunks(2), Suspected(3));
+  const auto innocent = Add(1, SixChunks(2));
+  const auto first = Add(2, SixChunks(2), Suspected(2));
+  const auto second = Add(3, SixChunks(2), Suspected(3));
   EXPECT_THAT(Turns(3, 20), ElementsAre(2, 2, 2));  // opens a point, 20 blocks, the chunk
   EXPECT_THAT(cleared_, ElementsAre(2));
   EXPECT_THAT(Turns(3, 20), ElementsAre(3, 3, 3));
@@ -44,8 +45,9 @@ TEST_F(SuspectsTest, ASuspectWaitsForTheEndOfTheOthersTurns) {
   EXPECT_THAT(Turns(1, 1), ElementsAre(2));
 }
 
-// Another point's chunk proves nothing, so other points wait. A finished point needs no chunk.
-TEST_F(SuspectsTest, TheChunksAreOfThePointsThatWereBeingComputed) {
+// A suspicion ends when each point that was being computed has a chunk. Other points wait until
+// then. A point that is already finished needs no chunk.
+TEST_F(SuspectsTest, ASuspicionEndsWithAChunkOfEachComputedPoint) {
   Add(1, SixChunks(5));
   const auto suspect = Add(2, SixChunks(5), [this](RunRequest& request, RecordingJournal& journal) {
     Suspected(2, {0, 1, 3, 7})(request, journal);
@@ -74,8 +76,9 @@ TEST_F(SuspectsTest, TheOthersGoOnAfterTwoMinutes) {
   Add(1, SixChunks(2));
   Add(2, SixChunks(2), Suspected(2));
   EXPECT_THAT(Turns(1, 1), ElementsAre(2));  // opens a point
-  const auto turn = Begin(), beside_it = Begin();
-  End(*turn, 1, 120);  // a minute
+  const auto turn = Begin();
+  const auto beside_it = Begin();
+  End(*turn, 1, 120);  // one of two parallel turns: counts as one minute
   End(*beside_it, 1, 59);
   EXPECT_THAT(undecided_, ElementsAre());
   End(*Begin(), 1, 2);
@@ -85,7 +88,8 @@ TEST_F(SuspectsTest, TheOthersGoOnAfterTwoMinutes) {
 }
 
 TEST_F(SuspectsTest, ACancelledSuspectLetsTheOthersGoOn) {
-  const auto innocent = Add(1, SixChunks(2)), suspect = Add(2, SixChunks(2), Suspected(2));
+  const auto innocent = Add(1, SixChunks(2));
+  const auto suspect = Add(2, SixChunks(2), Suspected(2));
   scheduler_.Cancel(2);
   EXPECT_EQ(suspect->ends, 1);
   TakeAllTurns();

@@ -127,7 +127,8 @@ TEST(ThreadExecutor, AJobOnADeviceHasTheSameBitsAlsoIfTheDeviceFails) {
   }
 }
 
-// The device is a GPU in a build with CUDA, which BALLPISTON_NIGHTLY keeps busy.
+// In a build with CUDA the device is a GPU. With BALLPISTON_NIGHTLY the samples are enough to keep
+// the GPU busy.
 TEST(ThreadExecutor, EveryExperimentWithAPairHasTheSameBitsOnADevice) {
   if (!LanesAreFused()) GTEST_SKIP();
   auto cuda = OpenCuda();

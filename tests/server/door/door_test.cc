@@ -90,7 +90,7 @@ TEST(DoorDescription, NamesAUnixSocket) {
 class SecureServer : public ::testing::Test {
  protected:
   TestClient NewAlice() { return TestClient(server_.NewChannel(files_.Credentials(kAlice))); }
-  // On a new connection.
+  // Lists the jobs on a new connection.
   grpc::Status List() { return NewAlice().Call(v1::ListEnsembleJobsRequest()); }
   std::string ServedCommonName() const {
     return SilentTlsConnection(server_.address()).served_common_name();

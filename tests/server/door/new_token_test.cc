@@ -29,7 +29,8 @@ class NewToken : public ::testing::Test {
 // tests/end_to_end/security_test.cc tests that the token is not in the file.
 TEST_F(NewToken, AuthenticatesItsPrincipalAndExpiresAfterItsDays) {
   const mode_t before = umask(0);
-  const std::string token = Issue("alice:submit"), short_lived = Issue("bob:admin:30");
+  const std::string token = Issue("alice:submit");
+  const std::string short_lived = Issue("bob:admin:30");
   umask(before);
   EXPECT_EQ(ModeOf(file_.path), 0600u);
   ASSERT_OK_AND_ASSIGN(const auto list, AccessList::Read(file_));

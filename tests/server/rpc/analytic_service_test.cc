@@ -23,7 +23,7 @@ std::vector<double> NumbersOf(const google::protobuf::Message& message) {
   return numbers;
 }
 
-TEST(AnalyticService, EveryFieldHasItsClosedFormRhoOutermost) {
+TEST(AnalyticService, EveryFieldHasItsClosedFormAndRhoVariesSlowest) {
   const auto answer = Evaluated(
       "rho: [0.53, 0.55] delta: [0.2, 0.1] epsilon: [0, 0.25, 0.5] outgoing_epsilon: [0.125, 0.25] "
       "beta: 4 temperature: 2");

@@ -72,7 +72,7 @@ TEST(EnsembleService, AnUnfinishedPointIsReadOnRequestOnly) {
   EXPECT_EQ(server.Answered<v1::PointResult>(request).samples(), 3 * kFakeSamplesPerBlock);
 }
 
-TEST(EnsembleService, TheBasicViewHasNoHistogramsAndPagesOfThemStayBelowTwoMebibytes) {
+TEST(EnsembleService, TheBasicViewOmitsHistogramsAndPagesWithHistogramsStayBelowTwoMebibytes) {
   RunningServer server({.factory = nullptr});  // the core's experiments
   v1::EnsembleSpec spec = SmallFirstHit();
   spec.mutable_grid()->clear_delta();

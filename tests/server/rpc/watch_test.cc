@@ -88,7 +88,7 @@ TEST_F(WatchTest, WithATokenOnlyNewerStateIsSent) {
 
 // ---- messages ----
 
-TEST_F(WatchTest, TheJobHasNoGridAndAtItsEndATimeOfExpiry) {
+TEST_F(WatchTest, TheJobHasNoGridAndAnEndedJobHasAnExpiryTime) {
   RunningServer server({.factory = GatedExperiments(gate_), .limits = {.retain_days = 3}});
   WatchStream stream(server, server.Submit(Equilibrium(3, 1)));
   const EnsembleJob first = stream.Next().value().job();

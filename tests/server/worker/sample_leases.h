@@ -19,9 +19,9 @@ inline EnsembleSpec SpecOf(const ExperimentKind& kind, Model model, int64_t samp
   return spec;
 }
 
-// One of each experiment and sampling model, of several chunks. A sample of a gas is more work than
-// other samples, and the first chunk has 64 replicas. Of samples that continue each other there are
-// 256 trajectories, and three stages.
+// One specification for each experiment and sampling model, with several chunks. A sample of a gas
+// is more work than other samples, and the first chunk has 64 replicas. An experiment whose samples
+// continue each other has 256 trajectories in three stages.
 inline std::vector<EnsembleSpec> EverySampledSpec() {
   std::vector<EnsembleSpec> specs;
   for (const ExperimentKind* kind : AllExperiments()) {

@@ -30,7 +30,7 @@ class WorkerProgramTest : public testing::Test {
     return options;
   }
 
-  // A limit of the process has the effect of a full disk. It is also that of files in memory, so
+  // The limit on file sizes has the effect of a full disk. It also applies to files in memory, so
   // the output goes through a pipe.
   ProcessOptions InAFullFolder(std::vector<std::string> further) const {
     ProcessOptions options = Command(std::move(further));

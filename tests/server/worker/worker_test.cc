@@ -84,7 +84,7 @@ TEST_F(WorkerTest, AWorkerThatMustEndAfterItsChunkGivesItsLeaseBack) {
   EXPECT_OK(Run());
   ASSERT_THAT(Names(), ElementsAre("done/a.me.returned"));
   const size_t computed = Computed("done/a.me.returned").size();
-  EXPECT_GE(computed, 2u);  // of which the worker has appended the first
+  EXPECT_GE(computed, 2u);  // the worker had already appended the first
   EXPECT_LT(computed, chunks_.size());
   EXPECT_THAT(lines_, IsEmpty());
 }

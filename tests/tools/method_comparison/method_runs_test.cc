@@ -117,9 +117,9 @@ double CombinedError(const Moments& a, const Moments& b) {
   return std::hypot(*a.StandardError(), *b.StandardError());
 }
 
-// Each precision against the next: H' - H = (bits' - bits) log 2/L, with the exponent L per hit
-// from the whole range of precisions. Three comparisons at 4.5 combined standard errors, with a
-// fixed seed; one in 5e4 seeds would fail.
+// The test compares each precision with the next: H' - H = (bits' - bits) log 2/L, with the
+// exponent L per hit from the whole range of precisions. It makes three comparisons at 4.5 combined
+// standard errors, with a fixed seed. One in 5e4 seeds would fail.
 TEST(TrajectoryHorizon, HorizonGrowsWithTheLogarithmOfThePrecision) {
   const std::pair<Method, int> methods[] = {{kReferenceSingle, 24},
                                             {kReference, 53},

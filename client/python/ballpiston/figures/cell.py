@@ -56,7 +56,8 @@ def _draw_walls(axes: Any, at: dict[str, Any]) -> None:
     axes.add_patch(Polygon(overlap, facecolor=style.OVERLAP))
     outline = cell_outline.outline(at["rho"])
     axes.add_patch(Polygon(outline, facecolor="white"))
-    half, eta = at["lambda"] / 2 + at["delta"], at["eta"]
+    half = at["lambda"] / 2 + at["delta"]
+    eta = at["eta"]
     axes.add_patch(Rectangle((0.5 - half, -eta / 2), 2 * half, eta, facecolor=style.REACH, **edge))
     axes.add_patch(Polygon(overlap, fill=False, linestyle=(0, (4, 3)), **edge))
     axes.add_patch(Rectangle((-0.5, -0.5), 1, 1, fill=False, linestyle=(0, (8, 5)), **edge))

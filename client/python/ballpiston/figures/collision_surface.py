@@ -63,7 +63,8 @@ def _in_plane_frame(n: FloatArray, t: FloatArray, v2: FloatArray) -> FloatArray:
 
 def _draw_circle(axes: Any, epsilon: float, sigma: int) -> None:
     """v3 = sigma sqrt(2 epsilon). The part above the tangent plane, v3 - v1 >= 0, is green."""
-    alpha, height = np.linspace(0, 2 * np.pi, 721), sigma * np.sqrt(2 * epsilon)
+    alpha = np.linspace(0, 2 * np.pi, 721)
+    height = sigma * np.sqrt(2 * epsilon)
     v1, v2 = np.sqrt(1 - 2 * epsilon) * np.array([np.cos(alpha), np.sin(alpha)])
     points = np.column_stack([v1, v2, np.full_like(alpha, height)])
     is_above = height - v1 >= 0

@@ -56,7 +56,8 @@ def draw(tables: Tables) -> style.Figure:
     left.set(xlabel="δ", ylabel="conductivity / static value")
     infinite = 1000 * (limit - 1)
     style.level(right, infinite, color=style.ORANGE, label=f"infinite: {infinite:.4f}")
-    share, excess = 1 / rings["cells"].astype(float), measured(rings, zero=1, unit=0.001)
+    share = 1 / rings["cells"].astype(float)
+    excess = measured(rings, zero=1, unit=0.001)
     style.error_points(right, share, *excess, style.BLUE, "jump process, rings of N cells")
     right.set(xlabel="1/N", ylabel="1000 (conductivity / static value - 1)")
     for axes in (left, right):

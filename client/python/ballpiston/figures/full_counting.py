@@ -107,7 +107,8 @@ def extrapolated(found: Table, hot: float, cold: float) -> Table:
         part = rows(found, order=order)
         terms = np.vander(1 / part["cells"].astype(float), _DEGREE + 1, increasing=True)
         values = *measured(part), correlations(part["cells"], order)
-        plain = fit = fits.linear(terms, *values)
+        plain = fits.linear(terms, *values)
+        fit = plain
         if order > 2:
             terms = np.column_stack([terms, transient(part["time"])])
             fit = fits.linear(terms, *values)

@@ -43,7 +43,8 @@ def measure(
 def merge(bins: Table, merged: int) -> Table:
     """Histograms with `merged` neighbouring bins in one. Densities are means over a bin; `error` is
     the standard error; that of an empty bin is the error of the count expected from h^(1)."""
-    keys, found = ("delta", "epsilon", "exponent", "sigma"), []
+    keys = ("delta", "epsilon", "exponent", "sigma")
+    found = []
     for values, part in groups(bins, *keys):
         starts = np.arange(0, len(part["lower"]), merged)
         ends = np.append(starts[1:], len(part["lower"])) - 1
@@ -74,7 +75,8 @@ def draw(tables: Tables) -> style.Figure:
                 law = rows(data, delta=delta, epsilon=epsilon, sigma=sigma)
                 x, density, exact = law["alpha"], law["density"], law["exact_density"]
                 low, high = density - law["error"], density + law["error"]
-                label, area = f"σ = {sign}1", {"color": colour, "linewidth": 0}
+                label = f"σ = {sign}1"
+                area = {"color": colour, "linewidth": 0}
                 axes.plot(x, density, color=colour, linewidth=1.2, label=label)
                 axes.fill_between(x, exact, alpha=0.25, label=f"h$^{{(1)}}$, {label}", **area)
                 axes.fill_between(x, low, high, alpha=0.35, **area)

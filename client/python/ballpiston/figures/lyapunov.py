@@ -42,11 +42,12 @@ def measure(
     samples: int = 2**16,
     seed: int = 0,
 ) -> Tables:
-    """The exponents at each delta from `collisions`, in proportion to delta below 0.02; what is
-    computed for lambda_2 from `samples` single collisions; and fits."""
+    """The exponents at each delta, from `collisions` collisions (below delta = 0.02: fewer, in
+    proportion to delta). lambda_2 as computed from `samples` single collisions. Fits."""
     second = "lyapunov_2_per_collision"
     question: dict[str, Any] = {"rho": rho, "model": "billiard", "seed": seed, "estimate": second}
-    forms, found = client.analytic(rho, delta), []
+    forms = client.analytic(rho, delta)
+    found = []
     for k, (d, tau) in enumerate(zip(forms["delta"].tolist(), forms["tau_ball_piston"].tolist())):
         count = round(max(_FEWEST, collisions * min(1.0, d / _FEWER_BELOW)))
         (point,) = answer(client, "lyapunov", delta=d, collisions=count, **question)

@@ -109,7 +109,8 @@ def maxima(points: Table) -> Table:
 def _highest_points(y: Any, error: Any) -> Iterator[int]:
     """The positions of the maxima. One counts if on both sides the excess falls by 15 percent and
     by 3 standard errors before it is higher again."""
-    extreme, sign = 0, -1  # the highest (1) or lowest (-1) point since the last turn
+    extreme = 0
+    sign = -1  # `extreme` is the highest (1) or lowest (-1) point since the last turn
     for i in range(1, len(y)):
         low, high = (i, extreme) if sign > 0 else (extreme, i)
         certain = 3 * np.hypot(error[low], error[high])

@@ -133,7 +133,8 @@ def draw(tables: Tables) -> style.Figure:
     for k, series in enumerate(conditional):
         several.append((2, *series, k - (len(conditional) - 1) / 2))
     for panel, part, colour, label, shift in several:
-        t, ratio = part["t"] * part["exact"], measured(part, "rate", unit=part["exact"])
+        t = part["t"] * part["exact"]
+        ratio = measured(part, "rate", unit=part["exact"])
         style.error_points(panels[panel], t * _ASIDE**shift, *ratio, colour, label)
     panels[0].set_ylabel("P(t)/t over the exact rate")
     panels[2].legend(loc="lower left")

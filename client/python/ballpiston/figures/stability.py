@@ -63,14 +63,16 @@ def counts(report: str) -> Table:
     """From the tables "All counts" of the program's report, which is Markdown. Only the first row
     of a block of rows contains the case."""
     found: list[dict[str, Any]] = []
-    case, number = "", 0
+    case = ""
+    number = 0
     for section, text in re.findall(r"All counts: ([^<]*)<(.*?)</details>", report, re.DOTALL):
         lines = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("|")]
         titles, _, *block = ([cell.strip() for cell in line] for line in lines)
         for line in block:
             cells = dict(zip(titles, line))
             if cells["case"]:
-                case, number = cells["case"], number + 1
+                case = cells["case"]
+                number += 1
             row = {"section": section, "row": number, "case": case, "method": cells["method"]}
             counted = {name: cells[name].replace(",", "") for name in cells if cells[name] != "-"}
             row |= {"starts": int(counted["starts"])}

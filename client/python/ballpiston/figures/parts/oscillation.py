@@ -133,7 +133,7 @@ def best_transform(chi_of_powers: FloatArray) -> dict[str, float]:
 
 
 def _sums(fitted: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Of each model, over the exponents of each energy."""
+    """One row for each energy and model: chi^2 and the counts, summed over the exponents."""
     found = []
     for epsilon, model in distinct((row["epsilon"], row["model"]) for row in fitted):
         same = [row for row in fitted if (row["epsilon"], row["model"]) == (epsilon, model)]

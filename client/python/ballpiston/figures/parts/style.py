@@ -50,7 +50,7 @@ def save(figure: Figure, path: Path) -> None:
     """As SVG or PNG, by the end of the path. The same picture gives the same file. A full disk
     leaves the old file."""
     ending = path.suffix.removeprefix(".")
-    buffer = io.BytesIO()  # a pipe cannot seek, as PNG needs
+    buffer = io.BytesIO()  # PNG needs a file that can seek; a pipe cannot
     with matplotlib.style.context(_SHEET, after_reset=True):
         metadata = {"Date": None} if ending == "svg" else {}
         figure.savefig(buffer, format=ending, metadata=metadata)

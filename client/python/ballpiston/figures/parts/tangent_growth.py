@@ -42,7 +42,8 @@ def mean_logarithms() -> tuple[float, float]:
     and <ln vy^2> = -1 - 2 ln 2."""
     speeds = (np.arange(_NODES) + 0.5) / _NODES
     phi = collision_rate(speeds)
-    of_phi, of_speeds = float((phi * np.log(phi)).mean()), float((phi * np.log(speeds)).mean())
+    of_phi = float((phi * np.log(phi)).mean())
+    of_speeds = float((phi * np.log(speeds)).mean())
     return -np.euler_gamma - of_phi, -1 - 2 * float(np.log(2)) - 2 * of_speeds
 
 
@@ -101,8 +102,8 @@ def stable_curvature(
 def second_exponent(
     rho: float, delta: float, tau: float, samples: int, seed: int = 0
 ) -> dict[str, float]:
-    """lambda_2 in a collision, at the mean free time `tau`; and, as `long_waits`, without the terms
-    in 1/t. The means of the logarithms of the wait and of vy^2/|p p'| are known, so only what
+    """lambda_2 per collision at the mean free time `tau`. `long_waits` is lambda_2 without the
+    terms in 1/t. The means of the logarithms of the wait and of vy^2/|p p'| are known, so only what
     remains is sampled."""
     rng = np.random.default_rng([seed, samples])
     parts = [
