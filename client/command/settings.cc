@@ -37,7 +37,7 @@ const Flag* FlagNamed(const Verb& verb, const std::string& name) {
 
 // ---- the config file ----
 
-const Flag* FindFlag(const Verb& verb, const std::string& key) {
+const Flag* FlagWithKey(const Verb& verb, const std::string& key) {
   for (const Flag* flag : FlagsOf(verb)) {
     if (KeyOf(*flag) == key) return flag;
   }
@@ -123,7 +123,7 @@ absl::Status AddConfig(const std::string& path, const Verb& verb, Settings& sett
       if (absl::Status bad = CheckKey(section, item.name); !bad.ok()) {
         return absl::InvalidArgumentError(absl::StrCat(path, ": ", bad.message()));
       }
-      const Flag* const flag = FindFlag(verb, item.name);
+      const Flag* const flag = FlagWithKey(verb, item.name);
       if (section != wanted || flag == nullptr) continue;
       const Source source = section.empty() ? Source::kFile : Source::kSection;
       settings.try_emplace(flag, Setting{absl::StrJoin(item.inputs, ","), source});

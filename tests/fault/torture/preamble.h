@@ -1,4 +1,5 @@
-// What every torture test has: its size, a server process, gRPC channels to it, and its findings.
+// Every torture test includes this header. It defines the size of the test, the server's process,
+// the gRPC channels to the server, and the findings of the test.
 //
 // By default each test takes five seconds of one core or less, except the two tests Kills, which
 // start a server for each failpoint. BALLPISTON_TORTURE=1 in the environment (`make torture`)
