@@ -129,7 +129,8 @@ def text_of(message: str, facts: Mapping[str, Any]) -> str:
 def from_rpc_error(rpc_error: Any) -> Error:
     """The exception for a grpc.RpcError."""
     code: str = rpc_error.code().name
-    details = dict(rpc_error.trailing_metadata() or ()).get("grpc-status-details-bin", b"")
+    metadata = dict(iter(rpc_error.trailing_metadata() or ()))  # grpc.aio's would be read as a dict
+    details = metadata.get("grpc-status-details-bin", b"")
     try:
         facts = facts_of(status_pb2.Status.FromString(details))
     except Exception:  # its class depends on the implementation of protobuf

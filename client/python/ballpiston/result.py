@@ -237,8 +237,8 @@ def _row(point: Point) -> dict[str, str]:
 def warnings_of(result: Result) -> list[str]:
     """A sentence for each point whose orbits left the cell."""
     lost = "orbits left the cell; this is a defect: do not use the point"
-    escapes = {message.index: message.health.escapes for message in result.messages}
-    return [f"warning: point {i}: {count:.15g} {lost}" for i, count in escapes.items() if count]
+    escapes = [(message.index, message.health.escapes) for message in result.messages]
+    return [f"warning: point {i}: {count:.15g} {lost}" for i, count in escapes if count]
 
 
 def load(path: str | os.PathLike[str]) -> Result:

@@ -125,7 +125,8 @@ def test_the_servers_own_token_is_read_for_each_call(
     assert Token(ChannelSecurity(tls=True), "127.0.0.1:1").metadata() == []
 
 
-def test_an_error_has_the_details_of_its_status() -> None:
+@pytest.mark.parametrize("metadata_of", [lambda *pairs: pairs, grpc.aio.Metadata])
+def test_an_error_has_the_details_of_its_status(metadata_of: Any) -> None:
     status = status_pb2.Status()
     retry = error_details_pb2.RetryInfo()
     retry.retry_delay.FromMilliseconds(1500)
@@ -134,7 +135,10 @@ def test_an_error_has_the_details_of_its_status() -> None:
     failed = SimpleNamespace(
         code=lambda: grpc.StatusCode.FAILED_PRECONDITION,
         details=lambda: "gone",
-        trailing_metadata={"grpc-status-details-bin": status.SerializeToString()}.items,
+        trailing_metadata=lambda: metadata_of(
+            ("grpc-retry-pushback-ms", "1500"),
+            ("grpc-status-details-bin", status.SerializeToString()),
+        ),
     )
     error = from_rpc_error(failed)
     assert isinstance(error, ballpiston.ResultsExpired)

@@ -225,6 +225,9 @@ def test_an_event_loop_watches_many_jobs(client: ballpiston.Client) -> None:
     cancelled = client.submit(**ENDLESS).cancel()
     with pytest.raises(ballpiston.JobCancelled):
         asyncio.run(cancelled.result_async())
+    cancelled.delete()
+    with pytest.raises(ballpiston.NotFound):
+        asyncio.run(cancelled.result_async())
 
 
 def test_the_collisions_of_a_job_are_read_as_records(
