@@ -5,7 +5,7 @@
 
 namespace ballpiston {
 
-inline constexpr char kEngineVersion[] = "0.26.0";
+inline constexpr char kEngineVersion[] = "0.27.0";
 
 // The version in this process. It ends with "-unfused" where the vector code has no fused
 // multiply-add, because its results differ in the last bits: what one process computed is not

@@ -153,10 +153,10 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
         new BallpistonServer(std::move(options), *std::move(directory), *address, *std::move(door),
                              *std::move(device), *std::move(store)));
     absl::Status status = server->book_.Resume();
-    if (status.ok()) server->StartThreads();
     if (status.ok()) status = server->StartMetrics();
     if (status.ok()) status = server->Listen();
     if (!status.ok()) return status;
+    server->StartThreads();  // a server that cannot listen does not touch the cluster's leases
     return server;
   } catch (const std::system_error& error) {
     return absl::InvalidArgumentError(absl::StrCat("the system cannot start more threads (",

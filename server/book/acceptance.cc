@@ -106,7 +106,8 @@ void Continue(Database& database, Acceptance& acceptance) {
 
 }  // namespace
 
-// An answer from the store stores no request: a retry finds the same answer.
+// An answer from the store stores no request: a retry finds it again, or an equal answer of another
+// job.
 std::optional<JobRecord> Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
   JobRecord& record = acceptance.record;
   std::optional<JobRecord> earlier = FindOriginal(database, record);

@@ -186,11 +186,14 @@ void FolderExecutor::NoteTaken(const LeaseFileName& file) {
     files_->Move(file.Taken(), file.Done(Outcome::kLost)).IgnoreError();  // it may be done now
     return;
   }
-  Laid& laid = found->second;
-  if (laid.worker == file.worker) return;
+  NoteWorker(found->second, file.worker);
+}
+
+void FolderExecutor::NoteWorker(Laid& laid, const std::string& worker) {
+  if (laid.worker == worker) return;
   taken_ += laid.worker.empty();
   has_workers_ = true;
-  laid.worker = file.worker;
+  laid.worker = worker;
   laid.alive = laid.looked = claimed_ = SteadyNow();
   MutexLock lock(mutex_);
   ++status_.claims;
@@ -262,6 +265,7 @@ void FolderExecutor::End(const LeaseFileName& file) {
   reported_.erase(file.lease);
   const auto found = leases_.find(file.lease);
   if (found == leases_.end()) return;
+  NoteWorker(found->second, file.worker);  // the lease may be taken and ended between two looks
   const Lease& lease = found->second.lease;
   if (*file.outcome == Outcome::kCrashed) {
     LogError(absl::StrCat("cluster folder: the engine crashed in worker ", file.worker));

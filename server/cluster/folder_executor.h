@@ -119,6 +119,7 @@ class FolderExecutor {
   absl::Status Collect();
   std::vector<LeaseFileName> ReportDone(const std::vector<std::string>& done);
   void NoteTaken(const LeaseFileName& file);
+  void NoteWorker(Laid& laid, const std::string& worker);
   bool Report(const LeaseFileName& file);
   absl::Status ReportBytes(absl::string_view bytes, Laid* laid);
   absl::StatusOr<Lease> TakeEarlier(absl::string_view& bytes) const;

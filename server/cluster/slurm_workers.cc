@@ -276,9 +276,11 @@ absl::Status SlurmWorkers::Judge(const FolderStatus& work, const SlurmQueue& que
   const size_t found = queue.waiting + queue.running;
   const bool took_leases = trial_ && work.claims > *trial_;
   const double accounted = work.claims + static_cast<double>(found);
-  const bool some_failed = accounted < submitted_ && work.waiting_leases > 0;
+  const bool some_ended = accounted < submitted_ && work.waiting_leases > 0;
+  // Slurm may have lost some of the waiting ones once, or their owner has cancelled them.
+  const bool some_fail = std::exchange(some_ended_, some_ended) && some_ended;
   submitted_ = std::clamp(submitted_, work.claims + static_cast<double>(queue.waiting), accounted);
-  if (some_failed) {
+  if (some_fail || (some_ended && found == 0)) {
     return Fails(
         "workers have ended without taking a lease; their messages are in the folder's log/");
   }

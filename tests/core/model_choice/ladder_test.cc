@@ -27,19 +27,20 @@ TEST(Ladder, ModelsAreChosenWithAReason) {
            {"conditional-mean-free-time budget=1", kClosed, "exact"},
            {"equilibrium verify=yes", kBilliard, "verify"},
            // Only the billiard measures laws: no target makes another model answer.
-           {"first-hit budget=1", kBilliard},
-           {"markov-property budget=1", kBilliard},
+           {"first-hit budget=1", kBilliard, "no cheaper model answers first-hit"},
+           {"markov-property budget=1", kBilliard, "error is not known for markov-property"},
            // Without a tolerance the answer is that of an exact model.
-           {"energy-relaxation delta=1e-4", kBilliard},
-           {"gas-conduction delta=1e-3", kBilliard},
+           {"energy-relaxation delta=1e-4", kBilliard, "without a tolerance"},
+           {"gas-conduction delta=1e-3", kBilliard, "without a tolerance"},
            {"gas-equilibrium delta=1e-4 estimate=conductivity", kBilliard, "without a tolerance"},
            // Around the mean energy there is no relaxation time, and the limit's error is unknown.
-           {"energy-relaxation delta=0.01 epsilon=0.15", kBilliard},
-           {"energy-relaxation delta=0.01 epsilon=0.15 budget=1e-3", kBilliard},
+           {"energy-relaxation delta=0.01 epsilon=0.15", kBilliard, "is not known at this point"},
+           {"energy-relaxation delta=0.01 epsilon=0.15 budget=1e-3", kBilliard, "at this point"},
            {"energy-relaxation rho=0.53 delta=0.01 tolerance=0.003", kSpectrum,
             "the limit's error, up to 0.00059, is within the tolerance"},
            // For a piston that hardly moves the limit does not apply at any delta.
-           {"energy-relaxation delta=0.0125 tolerance=0.02 epsilon=1e-6", kBilliard},
+           {"energy-relaxation delta=0.0125 tolerance=0.02 epsilon=1e-6", kBilliard,
+            "is beyond the tolerance"},
            // The discs nearly touch: the billiard would take years.
            {"energy-relaxation rho=0.50000378 delta=7e-9 epsilon=0 tolerance=0.1", kSpectrum,
             "is within the tolerance"},

@@ -25,7 +25,7 @@ constexpr Case kCasesOfErrors[] = {
     {"{conditional-mean-free-time|first-hit} samples=10000 delta=0.2 epsilon={0.125|0.3|0.45}",
      1.7},
     {"lyapunov collisions=5000 model=billiard {rho=0.501 delta=0.4|rho=0.53 delta=0.3|"
-     "rho=0.53 delta=0.02|rho=0.7 delta=0.01|rho=0.706 delta=0.0014} "
+     "rho=0.53 delta=0.02|rho=0.7 delta=0.01|rho=0.706 delta=0.0014|rho=0.706 delta=2e-4} "
      "estimate={lyapunov_1|lyapunov_2|entropy|lyapunov_1_per_collision|lyapunov_2_per_collision}",
      2.2},
     {"gas-lyapunov samples=100 model=billiard {cells=1 rho=0.51 delta=0.2|cells=4 delta=0.2|"

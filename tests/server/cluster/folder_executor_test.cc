@@ -181,6 +181,7 @@ TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReportedAndChargedOnce) {
   ComputeAll(*journal);
 }
 
+// Each of these leases is taken between two looks.
 TEST_F(FolderExecutorTest, ACrashOfTheEngineIsCounted) {
   const auto journal = Begin();
   for (int death = 0; death < kMostDeaths; ++death) {
@@ -195,6 +196,7 @@ TEST_F(FolderExecutorTest, ACrashOfTheEngineIsCounted) {
   }
   ASSERT_TRUE(journal->outcome);
   EXPECT_THAT(*journal->outcome, StatusIs(absl::StatusCode::kInternal));
+  EXPECT_EQ(executor_->Status().claims, kMostDeaths);
 }
 
 TEST_F(FolderExecutorTest, DamagedFilesAreRefusedAndComputedAgain) {

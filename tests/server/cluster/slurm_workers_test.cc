@@ -183,10 +183,12 @@ TEST_F(SlurmWorkersTest, WorkersThatFailAreTriedOneByOne) {
                       {{.running = 1}, 4, "", {2}, 0},
                       {never, 4, "for ever: PartitionTimeLimit", {}, 1},
                       {{.running = 5}, 4, "", {}, 0},
-                      // Five run on, and all others end at once.
+                      // Five run on, and the first others to start are lost.
                       {{.running = 5}, 4, "", {1}, 0, 10},
                       {{.running = 5}, 4, "", {2}, 0, 10},
-                      {{.running = 5}, 4, "", {4}, 0, 10},
+                      {{.running = 7}, 4, "", {3}, 0, 10},
+                      // Now all others end at once.
+                      {{.running = 5}, 4, "", {5}, 0, 10},
                       {{.running = 5}, 4, "without taking a lease", {}, 0, 10},
                       {{.running = 5}, 4, "without taking a lease", {1}, 0, 10},
                       {{.running = 6}, 9, "", {2}, 0, 10},
