@@ -165,8 +165,9 @@ Forecast ForecastOfLyapunov(Model model, const PointParameters& point) {
 constexpr Scatter OfOrbits(double error) { return {error, kOrbitsPerCollision}; }
 
 // The scatter of lambda_2: a fit, within a factor of 1.5, to errors that were measured for rho =
-// 0.501 to 0.7071 and delta = 0.05 to 1 of its bound. Near the bound they are larger in small
-// cells, where they grow with the logarithm of the distance to rho = 1/sqrt(2).
+// 0.501 to 0.7071 and delta = 0.05 to 1 of its bound. `at_delta_0` and `at_bound` are the errors in
+// large cells. In small cells the error near the bound is larger: it grows with
+// -log(1/sqrt(2) - rho).
 Scatter OfSecond(const PointParameters& point, double at_delta_0, double at_bound) {
   constexpr double kLargest = 2.5, kAtASmallCell = 1.1, kSmallCell = 0.007;
   const double room = std::numbers::sqrt2 / 2 - point[kRho];

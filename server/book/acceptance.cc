@@ -106,8 +106,8 @@ void Continue(Database& database, Acceptance& acceptance) {
 
 }  // namespace
 
-// An answer from the store stores no request: a retry finds it again, or an equal answer of another
-// job.
+// An answer from the store stores no request. So a retry asks the question again: it returns the
+// same job, another job with the same answer, or, if these were deleted, a new job.
 std::optional<JobRecord> Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
   JobRecord& record = acceptance.record;
   std::optional<JobRecord> earlier = FindOriginal(database, record);

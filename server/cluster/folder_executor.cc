@@ -167,8 +167,11 @@ std::vector<LeaseFileName> FolderExecutor::ReportDone(const std::vector<std::str
   std::vector<LeaseFileName> reported;
   for (const std::string& name : done) {
     const auto file = ParseDone(name);
-    const bool is_earlier = file && !leases_.contains(file->lease);
+    const auto found = file ? leases_.find(file->lease) : leases_.end();
+    const bool is_earlier = file && found == leases_.end();
     if (!file || (is_earlier && !earlier_are_due)) continue;
+    // The lease may have been taken and have ended since the last look.
+    if (!is_earlier) NoteWorker(found->second, file->worker);
     const bool stays = !Report(*file);
     if (!stays) reported.push_back(*file);
     earlier_stay |= is_earlier && stays;
@@ -191,9 +194,10 @@ void FolderExecutor::NoteTaken(const LeaseFileName& file) {
 
 void FolderExecutor::NoteWorker(Laid& laid, const std::string& worker) {
   if (laid.worker == worker) return;
-  taken_ += laid.worker.empty();
+  const bool is_first = laid.worker.empty();
+  laid.worker = worker;  // may throw
+  taken_ += is_first;
   has_workers_ = true;
-  laid.worker = worker;
   laid.alive = laid.looked = claimed_ = SteadyNow();
   MutexLock lock(mutex_);
   ++status_.claims;
@@ -265,7 +269,6 @@ void FolderExecutor::End(const LeaseFileName& file) {
   reported_.erase(file.lease);
   const auto found = leases_.find(file.lease);
   if (found == leases_.end()) return;
-  NoteWorker(found->second, file.worker);  // the lease may be taken and ended between two looks
   const Lease& lease = found->second.lease;
   if (*file.outcome == Outcome::kCrashed) {
     LogError(absl::StrCat("cluster folder: the engine crashed in worker ", file.worker));

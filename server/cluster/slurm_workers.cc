@@ -277,10 +277,12 @@ absl::Status SlurmWorkers::Judge(const FolderStatus& work, const SlurmQueue& que
   const bool took_leases = trial_ && work.claims > *trial_;
   const double accounted = work.claims + static_cast<double>(found);
   const bool some_ended = accounted < submitted_ && work.waiting_leases > 0;
-  // Slurm may have lost some of the waiting ones once, or their owner has cancelled them.
-  const bool some_fail = std::exchange(some_ended_, some_ended) && some_ended;
+  // One such end may be Slurm's or a user's doing: a waiting worker was lost or cancelled.
+  const bool some_fail = some_ended && (some_ended_ || found == 0 || !fault_.ok());
+  // While workers wait, it is not known yet whether they fail too.
+  if (some_ended || queue.waiting == 0) some_ended_ = some_ended;
   submitted_ = std::clamp(submitted_, work.claims + static_cast<double>(queue.waiting), accounted);
-  if (some_fail || (some_ended && found == 0)) {
+  if (some_fail) {
     return Fails(
         "workers have ended without taking a lease; their messages are in the folder's log/");
   }

@@ -15,8 +15,8 @@
 //   working   | the start, a lease that one of them took, or a query that  | those missing,
 //             | finds as many as there are leases                          | at most `step_`
 //   failing   | one would wait for ever (those that wait are cancelled);   | one, for a trial
-//             | or without taking a lease (`submitted_`) all have ended,   |
-//             | or at two queries in turn some                             |
+//             | or some have ended without taking a lease (`submitted_`),  |
+//             | and none is left, or it is the second time (`some_ended_`) |
 //   on trial  | the submission of this one                                 | none
 //
 // `step_` is --slurm-workers at first. A failure makes it 1, a refusal by Slurm half of the number
@@ -134,7 +134,7 @@ class SlurmWorkers {
   // a lease breaks. Each submission raises it. It is at least (leases taken + waiting workers), so
   // a running worker with many leases hides at most one such end. 0 when no lease waits.
   double submitted_ = 0;
-  bool some_ended_ = false;  // without a lease, at the last query
+  bool some_ended_ = false;  // without a lease, at the last query that could tell
   size_t step_;
   Clock::time_point next_query_ = {};
   std::chrono::milliseconds backoff_{0};

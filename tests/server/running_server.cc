@@ -26,6 +26,7 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> Start(const TestServerOptions&
   all.watch = options.watch;
   all.limits = options.limits;
   all.metrics_listen = options.metrics_listen;
+  all.cluster = options.cluster;
   all.store = options.store;
   return BallpistonServer::Start(all);
 }

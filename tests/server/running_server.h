@@ -26,6 +26,7 @@ struct TestServerOptions {
   WatchTiming watch = {.snapshot = std::chrono::milliseconds(2)};
   Limits limits = {};
   std::string metrics_listen = {};
+  std::optional<ClusterOptions> cluster = {};
   // On a busy machine a commit may take long although the disk does not hang.
   Store::Options store = {.delay = std::chrono::milliseconds(1), .stall = kUnreachedLimit};
   std::shared_ptr<grpc::ChannelCredentials> credentials = nullptr;  // the client's; null: none

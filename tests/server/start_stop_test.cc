@@ -32,6 +32,14 @@ TEST(StartStop, APortOrADataFolderInUseIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder.File("server.address")));
 }
 
+TEST(StartStop, AServerThatCannotListenDoesNotTouchItsClustersFolder) {
+  const TemporaryFolder folder;
+  RunningServer other({.listen = "127.0.0.1:0"});
+  ExpectStartRefused(
+      {.listen = other.address(), .cluster = ClusterOptions{.folder = folder.path()}}, "in use");
+  EXPECT_THAT(NamesIn(folder.path()), IsEmpty());
+}
+
 TEST(StartStop, OtherFilesAtASocketsPathStay) {
   const TemporaryFolder folder;
   const std::string precious = folder.File("precious"), datagrams = folder.File("datagrams");

@@ -129,7 +129,8 @@ def text_of(message: str, facts: Mapping[str, Any]) -> str:
 def from_rpc_error(rpc_error: Any) -> Error:
     """The exception for a grpc.RpcError."""
     code: str = rpc_error.code().name
-    metadata = dict(iter(rpc_error.trailing_metadata() or ()))  # grpc.aio's would be read as a dict
+    # dict(grpc.aio.Metadata) fails, because its keys() gives pairs; iter() gives the same pairs.
+    metadata = dict(iter(rpc_error.trailing_metadata() or ()))
     details = metadata.get("grpc-status-details-bin", b"")
     try:
         facts = facts_of(status_pb2.Status.FromString(details))

@@ -194,6 +194,8 @@ def test_a_table_has_the_state_of_its_points_and_warns_of_lost_orbits(
     warning = "warning: point 2: 3 orbits left the cell; this is a defect: do not use the point"
     assert f"{job.name}: {warning}\n" in capsys.readouterr().err
     assert repr(lost).endswith(f"\n{warning}") and warning in lost._repr_html_()
+    same_index = ballpiston.Result(partial, [lost.messages[2], first_hits.messages[2]])
+    assert warning in repr(same_index)
 
 
 def test_the_estimates_of_a_running_job_have_a_note(

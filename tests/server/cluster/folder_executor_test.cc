@@ -181,7 +181,7 @@ TEST_F(FolderExecutorTest, AFileOfAnEarlierProcessIsReportedAndChargedOnce) {
   ComputeAll(*journal);
 }
 
-// Each of these leases is taken between two looks.
+// Each of these leases is taken and ends between two looks.
 TEST_F(FolderExecutorTest, ACrashOfTheEngineIsCounted) {
   const auto journal = Begin();
   for (int death = 0; death < kMostDeaths; ++death) {

@@ -183,12 +183,17 @@ TEST_F(SlurmWorkersTest, WorkersThatFailAreTriedOneByOne) {
                       {{.running = 1}, 4, "", {2}, 0},
                       {never, 4, "for ever: PartitionTimeLimit", {}, 1},
                       {{.running = 5}, 4, "", {}, 0},
-                      // Five run on, and the first others to start are lost.
+                      // Five workers run on. The first two that are submitted beside them end;
+                      // the leases of the five hide this (`submitted_`).
                       {{.running = 5}, 4, "", {1}, 0, 10},
                       {{.running = 5}, 4, "", {2}, 0, 10},
                       {{.running = 7}, 4, "", {3}, 0, 10},
-                      // Now all others end at once.
+                      // All but the five end once and are replaced. The next ones run.
                       {{.running = 5}, 4, "", {5}, 0, 10},
+                      {{.running = 10}, 4, "", {}, 0, 10},
+                      // All but the five end, and so do their successors, which waited.
+                      {{.running = 5}, 4, "", {5}, 0, 10},
+                      {{.waiting = 5, .running = 5}, 4, "", {}, 0, 10},
                       {{.running = 5}, 4, "without taking a lease", {}, 0, 10},
                       {{.running = 5}, 4, "without taking a lease", {1}, 0, 10},
                       {{.running = 6}, 9, "", {2}, 0, 10},
