@@ -44,7 +44,7 @@ std::string NameOf(const Flag& flag, Source source) {
 // The text, quoted if needed, so that a shell reads it as one word.
 std::string ShellWord(const std::string& text) {
   constexpr char kPlain[] =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=@%+,-[]";
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=@%+,-";
   if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
   return absl::StrCat("'", absl::StrReplaceAll(text, {{"'", "'\\''"}}), "'");
 }

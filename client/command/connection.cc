@@ -106,11 +106,16 @@ absl::StatusOr<Connection> ConnectPrivately(bool may_start) {
                     .security = {}};
 }
 
-absl::StatusOr<Connection> Connect(const Options& options, bool may_start) {
-  if (!options.server.empty()) return ConnectTo(options.server, options);
-  if (!HasSecurityFlags(options)) return ConnectPrivately(may_start);
+absl::Status CheckFlagsOfPrivateServer(const Options& options) {
+  if (!HasSecurityFlags(options)) return absl::OkStatus();
   return absl::InvalidArgumentError(
       "the private server uses neither TLS nor a token; name another server with --server");
+}
+
+absl::StatusOr<Connection> Connect(const Options& options, bool may_start) {
+  if (!options.server.empty()) return ConnectTo(options.server, options);
+  const absl::Status bad = CheckFlagsOfPrivateServer(options);
+  return bad.ok() ? ConnectPrivately(may_start) : bad;
 }
 
 // ---- jobs ----
@@ -156,6 +161,11 @@ std::string ConnectionHint(const std::string& address, const ChannelSecurity& se
     if (absl::StrContains(message, hint.part)) return "\n  " + hint.text;
   }
   return "";
+}
+
+absl::Status CheckServerFlags(const Options& options) {
+  if (options.server.empty()) return CheckFlagsOfPrivateServer(options);
+  return ConnectTo(options.server, options).status();
 }
 
 // An error without a reason is an error of the connection; the server's errors have a reason.

@@ -27,6 +27,9 @@ struct Connection {
   ChannelSecurity security;  // of the channel
 };
 
+// Checks the flags of the server and of its security without a call, as WithServer does.
+absl::Status CheckServerFlags(const Options& options);
+
 // Adds the server's address to an error of the connection. Does not change the server's own errors.
 absl::Status NameServer(const absl::Status& status, const Connection& connection);
 

@@ -15,6 +15,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
+#include "client/command/connection.h"
 #include "client/command/follow_job.h"
 #include "client/command/interrupts.h"
 #include "client/command/settings.h"
@@ -83,6 +84,7 @@ std::vector<std::string> PythonCommand(const std::vector<std::string>& arguments
 VerbResult RunPythonProgram(const std::string& module, const std::vector<std::string>& arguments,
                             const Options& options, Terminal& terminal) {
   SetEnvironment(options);
+  terminal.Detail("program " + Interpreter());
   terminal.out.flush();
   std::vector<std::string> words = {"-m", module};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -197,8 +199,11 @@ VerbResult Figure(const Options& options, Terminal& terminal) {
   }
   const auto words = FigureWords(options.words);
   if (!words.ok()) return words.status();
-  absl::Status bad = CheckPython("figure", {"ballpiston", "matplotlib"},
-                                 "python3-ballpiston and python3-matplotlib");
+  absl::Status bad = CheckServerFlags(options);
+  if (bad.ok()) {
+    bad = CheckPython("figure", {"ballpiston", "matplotlib"},
+                      "python3-ballpiston and python3-matplotlib");
+  }
   if (!bad.ok()) return bad;
   return RunPythonProgram("ballpiston.figures", *words, options, terminal);
 }
@@ -209,6 +214,7 @@ VerbResult Export(const Options& options, Terminal& terminal) {
         "--label and names of jobs exclude each other: give one of them, or neither");
   }
   if (absl::Status bad = CheckTableFile(options.out); !bad.ok()) return bad;
+  if (absl::Status bad = CheckServerFlags(options); !bad.ok()) return bad;
   if (absl::Status bad = CheckPythonFor("--out " + options.out); !bad.ok()) return bad;
   std::vector<std::string> arguments = {"export", options.out};
   for (const auto& [key, value] : options.labels) {

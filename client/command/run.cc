@@ -1,6 +1,8 @@
 // ballpiston submit, run and result: submit a job; run also watches it and prints its result.
 #include <algorithm>
+#include <filesystem>
 #include <map>
+#include <system_error>
 
 #include "absl/status/status.h"
 #include "absl/strings/match.h"
@@ -156,13 +158,8 @@ absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& jo
 // Replaces the content of the unfinished file, a result in JSON, by NumPy arrays.
 absl::Status ToArrays(NewFile& file, const Options& options, Terminal& terminal) {
   if (absl::Status written = file.Flush(); !written.ok()) return written;
-  const std::string part = file.part().string();
-  if (part.empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--save: ", options.save, " is not a regular file, as .npz needs it"));
-  }
   const VerbResult end =
-      RunPythonProgram("ballpiston.command", {"arrays", part}, options, terminal);
+      RunPythonProgram("ballpiston.command", {"arrays", file.part().string()}, options, terminal);
   if (!end.ok()) return end.status();
   if (*end == ExitCode::kDone) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat("--save: ", options.save, " is not written"));
@@ -179,7 +176,7 @@ absl::Status SavePoints(const Connection& connection, const v1::EnsembleJob& job
   return saved;
 }
 
-// Checks --save before a job runs: the file's ending and folder.
+// Checks --save before a job runs: the file's ending, kind and folder.
 absl::Status CheckSave(const Options& options) {
   if (options.save.empty()) return absl::OkStatus();
   const bool is_csv = absl::EndsWith(options.save, ".csv");
@@ -196,6 +193,12 @@ absl::Status CheckSave(const Options& options) {
   }
   if (absl::Status bad = CheckNewFile("--save", options.save); !bad.ok()) return bad;
   if (!IsNpz(options)) return absl::OkStatus();
+  std::error_code error;
+  const std::filesystem::file_status found = std::filesystem::status(options.save, error);
+  if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--save: ", options.save, " is not a regular file, as .npz needs it"));
+  }
   return CheckPythonFor("--save " + options.save);
 }
 
@@ -271,7 +274,7 @@ VerbResult Result(const Options& options, Terminal& terminal) {
         }
         // A label may stand for one job today and for two tomorrow.
         const bool may_be_many = jobs.size() > 1 || options.jobs.empty();
-        const bool has_names = may_be_many && options.format == Format::kJsonl;
+        const bool has_names = may_be_many && FormatOf(options) == Format::kJsonl;
         ExitCode worst = ExitCode::kDone;
         absl::Status missing;
         for (const v1::EnsembleJob& job : jobs) {

@@ -96,6 +96,7 @@ std::optional<int> ExitStatus(pid_t pid) {
 absl::StatusOr<int> WaitForChild(pid_t pid) {
   int status = 0;
   while (waitpid(pid, &status, 0) < 0) {
+    if (errno == ECHILD) return kUnknownStatus;
     if (errno != EINTR) return absl::ErrnoToStatus(errno, "waiting for a child process");
   }
   return Decode(status);

@@ -184,7 +184,7 @@ absl::Status StopServer(const std::string& folder, absl::Duration timeout) {
     return absl::UnavailableError(absl::StrCat("the server that uses ", folder,
                                                " is just starting, or is on another machine"));
   }
-  if (kill(server->pid, SIGTERM) != 0) {
+  if (kill(server->pid, SIGTERM) != 0 && errno != ESRCH) {
     return absl::ErrnoToStatus(errno, absl::StrCat("cannot stop the server in ", folder));
   }
   const bool ended = Await(timeout, [&] {

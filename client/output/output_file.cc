@@ -79,9 +79,12 @@ absl::Status CheckNewFile(const std::string& flag, const std::string& path) {
 }
 
 void RemoveUnfinishedFiles() {
-  AllUnfinished().mutex.lock();
-  std::error_code ignored;
-  for (const fs::path& part : AllUnfinished().parts) fs::remove(part, ignored);
+  static std::once_flag once;
+  std::call_once(once, [] {
+    AllUnfinished().mutex.lock();
+    std::error_code ignored;
+    for (const fs::path& part : AllUnfinished().parts) fs::remove(part, ignored);
+  });
 }
 
 NewFile::NewFile(std::string flag, std::string path)

@@ -37,8 +37,9 @@ void ReadShortfall(Database& database, const JobRecord& record, const EnsembleSp
                    std::optional<Shortfall>& shortfall) {
   if (!spec.target.tolerance) return;
   ReadResults(database, record.sequence, 0, Details::kLeftOut, [&](const PointRow& row) {
-    if (row.samples == 0) return true;  // the answer needs no samples
     const v1::PointResult result = database.ValueOf(ResultFromBytes(row.result));
+    // A model that needs no samples gives its estimates, a billiard without samples gives none.
+    if (row.samples == 0 && !result.estimates().empty()) return true;
     const Estimate reached = FirstEstimateOf(result);
     if (RelativeError(reached) <= *spec.target.tolerance) return true;
     const auto point = static_cast<size_t>(row.point);

@@ -7,8 +7,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
+#include <string>
 #include <system_error>
+#include <utility>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/match.h"
@@ -50,10 +52,11 @@ absl::Status MakeFolder(const std::string& path) {
 }
 
 absl::StatusOr<std::string> BytesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (!file || bytes.empty()) return absl::NotFoundError(absl::StrCat(path, " cannot be read"));
-  return bytes;
+  const std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();  // fails if nothing is read, for instance from a folder
+  if (!bytes) return absl::NotFoundError(absl::StrCat(path, " cannot be read"));
+  return std::move(bytes).str();
 }
 
 // Beside this program, as in a build folder, or in libexec, as installed.

@@ -222,7 +222,12 @@ void SlurmWorkers::Look() {
   const Clock::time_point now = SteadyNow();
   const bool is_idle = !has_work && !may_have_workers_ && backoff_.count() == 0;
   if (now < next_query_ || is_idle) return;
-  const absl::Status steered = Steer(work);
+  absl::Status steered;
+  try {
+    steered = Steer(work);
+  } catch (const std::exception& error) {
+    steered = absl::InternalError(error.what());
+  }
   if (!steered.ok()) {
     backoff_ = std::clamp(2 * backoff_, options_.query_interval, kLongestPause);
   } else if (fault_.ok()) {

@@ -46,16 +46,33 @@ TEST(Restart, WithLessMemoryOnlyNewJobsAreRefused) {
 }
 
 // A job of the fake experiments, stopped with a finished point and a part of the second.
-std::string LeaveUnfinished(const TemporaryFolder& folder) {
+std::string LeaveUnfinished(const TemporaryFolder& folder,
+                            const v1::EnsembleSpec& spec = Equilibrium(2, 50)) {
   Gate gate;
   RunningServer server(
       {.data_dir = folder.path(),
        .factory = FakeExperiments([&](size_t point, uint64_t block, std::stop_token stop) {
          if (point == 1 && block >= 10) gate.Pass(stop);
        })});
-  const std::string name = server.Submit(Equilibrium(2, 50));
+  const std::string name = server.Submit(spec);
   gate.AwaitWaiting(2);
   return name;
+}
+
+// Both points miss it. The error names the first one, which had ended before the restart, also if
+// its samples were too few for an estimate.
+TEST(Restart, AMissedToleranceIsRemembered) {
+  v1::EnsembleSpec spec = Equilibrium(2, 50);
+  spec.mutable_target()->set_tolerance(1e-6);
+  for (const char* damage : {"SELECT 0", "UPDATE results SET samples = 0, result = x''"}) {
+    SCOPED_TRACE(damage);
+    const TemporaryFolder folder;
+    const std::string name = LeaveUnfinished(folder, spec);
+    ChangeStore(folder.File("store.sqlite3"), damage);
+    RunningServer server({.data_dir = folder.path()});
+    const EnsembleJob job = server.AwaitEnd(name);
+    EXPECT_THAT(job.error().message(), HasSubstr("point 0"));
+  }
 }
 
 TEST(Restart, AnotherEngineComputesAllAgain) {

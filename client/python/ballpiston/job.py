@@ -238,7 +238,7 @@ class Job:
 
     def _repr_html_(self) -> str:
         request = ensemble_pb2.GetEnsembleJobRequest(name=self.name)
-        with suppress(Error):  # if the server answers at once; a private one is not started for it
+        with suppress(Error, ValueError):  # no answer at once, or the connection is closed
             self.message = self._connection.call_once(request, _GLANCE_SECONDS)
         progress = self.message.progress
         facts = {

@@ -29,9 +29,13 @@ _MOST_ROWS = 20
 
 def _shown_once(read: Callable[[Any], Value], doc: str) -> Value:
     """A property of a Result: what the function reads in its messages, once for each object."""
-    once = cached_property(lambda result: read(result.messages))
-    once.__doc__ = doc
-    return once  # type: ignore[return-value]
+
+    def value(result: Result) -> Any:
+        if doc not in result._read:
+            result._read[doc] = read(result.messages)
+        return result._read[doc]
+
+    return property(value, doc=doc)  # type: ignore[return-value]
 
 
 class Result:
@@ -70,6 +74,7 @@ class Result:
     def __init__(self, job: Any, messages: Sequence[Any]) -> None:
         self.job = job
         self.messages = list(messages)
+        self._read: dict[str, Any] = {}
 
     def __len__(self) -> int:
         return len(self.messages)

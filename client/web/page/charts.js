@@ -294,7 +294,8 @@
     // Keeps the zoom, unless it has no data any more.
     replace(data) {
       const {min, max} = this.uplot.scales.x;
-      const isZoomed = isSelected(this.uplot.data[0], min, max) && max >= data[0][0];
+      const hasData = max >= data[0][0] && min <= data[0].at(-1);
+      const isZoomed = hasData && isSelected(this.uplot.data[0], min, max);
       this.uplot.setData(data, !isZoomed);
       if (isZoomed) this.uplot.redraw();
     }
@@ -385,9 +386,13 @@
       if (this.details.open) this.numbers.replaceChildren(tableOf(this.chart));
     }
 
+    // Keeps the zoom.
     repaint() {
+      const {min, max} = this.uplot?.scales.x ?? {};
+      const isZoomed = this.uplot && isSelected(this.uplot.data[0], min, max);
       this.clear();
       this.resize();
+      if (isZoomed) this.uplot?.setScale('x', {min, max});
     }
   }
 
@@ -403,7 +408,8 @@
       ...more,
     });
     const sources = new Set(places.map((at) => at.source));
-    const measured = {label: label || [...sources].join(', '), kind: 'measured', colour};
+    const name = label || [...sources].join(', ') || 'measured';
+    const measured = {label: name, kind: 'measured', colour};
     const compared = Object.keys(COMPARED)
       .filter((kind) => places.some((at) => isNumber(at[kind])))
       .map((kind) =>

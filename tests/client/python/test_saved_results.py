@@ -45,6 +45,12 @@ def test_the_saved_document_is_that_of_the_command_line_bit_for_bit(
     assert ballpiston.load(tmp_path / "printed.json") == first_hits
 
 
+def test_arrays_need_a_regular_file(home: Home, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.npz")
+    refused = home.run("result", "ensembleJobs/none", "--save", str(tmp_path / "pipe.npz"))
+    assert refused.returncode == 2 and "is not a regular file" in refused.stderr
+
+
 @pytest.mark.parametrize("end,code", [("kill $PPID; sleep 60; echo late", 130), ("exit 1", 2)])
 def test_a_conversion_to_arrays_that_does_not_end_keeps_the_previous_file(
     end: str,

@@ -68,7 +68,9 @@ TEST_F(ClusterFolderTest, TheWorkerIsCopiedIfItHasChanged) {
   EXPECT_OK(CopyWorker(shared_, program));
   EXPECT_EQ(Contents(copy), "two");
   EXPECT_FALSE(std::filesystem::exists(copy + ".new"));
-  EXPECT_THAT(CopyWorker(shared_, folder_.File("missing")), StatusIs(Code::kNotFound));
+  for (const std::string& unreadable : {folder_.File("missing"), folder_.path()}) {
+    EXPECT_THAT(CopyWorker(shared_, unreadable), StatusIs(Code::kNotFound));
+  }
 }
 
 }  // namespace

@@ -51,12 +51,12 @@ class SlurmWorkersTest : public testing::Test {
   SlurmWorkers New(SlurmOptions options = {.workers = 10, .query_interval = milliseconds(0)}) {
     return SlurmWorkers(
         options, std::make_unique<FakeTools>(slurm_), [this] { return work_; },
-        [this] { return ready_; });
+        [this] { return ready_(); });
   }
 
   FakeSlurm slurm_;
   FolderStatus work_;
-  absl::Status ready_;
+  std::function<absl::Status()> ready_ = [] { return absl::OkStatus(); };
 };
 
 TEST_F(SlurmWorkersTest, AsManyWorkersAreSubmittedAsThereAreLeases) {
@@ -134,12 +134,15 @@ TEST_F(SlurmWorkersTest, AProblemIsShownUntilItIsGone) {
 }
 
 TEST_F(SlurmWorkersTest, AFolderThatIsNotReadyGetsNoWorkers) {
-  ready_ = absl::ResourceExhaustedError("no space left");
   SlurmWorkers workers = New();
   work_ = {.waiting_leases = 5};
+  ready_ = [] { return absl::ResourceExhaustedError("no space left"); };
   workers.Look();
-  EXPECT_THAT(slurm_.submitted, IsEmpty());
   EXPECT_EQ(workers.Status().problem, "no space left");
+  ready_ = []() -> absl::Status { throw std::runtime_error("no memory left"); };
+  workers.Look();
+  EXPECT_EQ(workers.Status().problem, "no memory left");
+  EXPECT_THAT(slurm_.submitted, IsEmpty());
 }
 
 TEST_F(SlurmWorkersTest, ARefusedNumberIsHalvedAndAnAcceptedOneDoubled) {

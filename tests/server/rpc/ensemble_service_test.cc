@@ -36,6 +36,23 @@ TEST(EnsembleService, AnUpdateSetsTheFieldsOfItsMask) {
 
 // ---- List ----
 
+TEST(EnsembleService, AListByLabelsHasTheJobsWithAllOfThem) {
+  RunningServer server;
+  auto update = FromText<v1::UpdateEnsembleJobRequest>(
+      "job { labels { key: 'a' value: '1' } labels { key: 'b' value: '2' } } "
+      "update_mask { paths: 'labels' }");
+  update.mutable_job()->set_name(server.Succeeded(Equilibrium(1, 2)));
+  server.Answered<EnsembleJob>(update);
+  for (const auto& [labels, jobs] :
+       {std::pair("labels { key: 'a' value: '1' } labels { key: 'b' value: '2' }", 1),
+        {"labels { key: 'b' value: '2' }", 1},
+        {"labels { key: 'a' value: '2' }", 0},
+        {"labels { key: 'a' value: '1' } labels { key: 'c' value: '1' }", 0}}) {
+    const auto request = FromText<v1::ListEnsembleJobsRequest>(labels);
+    EXPECT_EQ(server.Answered<v1::ListEnsembleJobsResponse>(request).jobs_size(), jobs) << labels;
+  }
+}
+
 TEST(EnsembleService, PagesOfLargeJobsStayBelowTwoMebibytes) {
   Gate gate;
   RunningServer server({.factory = GatedExperiments(gate)});

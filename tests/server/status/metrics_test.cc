@@ -49,6 +49,15 @@ class MetricsTest : public testing::Test {
   std::optional<RunningServer> server_;
 };
 
+TEST_F(MetricsTest, AFolderThatOthersCanWriteIsAProblemOfTheCluster) {
+  const TemporaryFolder shared;
+  chmod(shared.path().c_str(), 0777);
+  server_.emplace(TestServerOptions{.metrics_listen = "localhost:0",
+                                    .cluster = ClusterOptions{.folder = shared.path()}});
+  Await("ballpiston_cluster_failing", 1);
+  EXPECT_THAT(server_->Status().cluster().problem(), HasSubstr("can be written by other users"));
+}
+
 TEST_F(MetricsTest, AHealthWatchEndedByItsClientIsNotLogged) {
   testing::internal::CaptureStderr();
   RunningServer& server = Start();

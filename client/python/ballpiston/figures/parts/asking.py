@@ -38,7 +38,7 @@ def answer(client: Client, experiment: str, **question: Any) -> Result:
 def divergences(result: Result) -> Table:
     """The relative entropy of the ingoing law of first hits at each point, with its noise floor:
     its mean, and the standard deviation `noise_error`, if the two laws were equal."""
-    found = {name: result.parameters[name] for name in ("delta", "epsilon", "exponent")}
+    found = {name: result.parameters[name].copy() for name in ("delta", "epsilon", "exponent")}
     for field in ("value", "standard_error", "noise_floor", "noise_error"):
         found[field] = column((m.kl_divergence for m in result.messages), field)
     return found
