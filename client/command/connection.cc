@@ -13,6 +13,7 @@
 #include "absl/time/time.h"
 #include "client/command/verb_table.h"
 #include "client/library/channel.h"
+#include "client/library/channel_security.h"
 #include "client/library/error_text.h"
 #include "client/library/local_server.h"
 #include "client/output/spelling.h"
@@ -165,7 +166,9 @@ std::string ConnectionHint(const std::string& address, const ChannelSecurity& se
 
 absl::Status CheckServerFlags(const Options& options) {
   if (options.server.empty()) return CheckFlagsOfPrivateServer(options);
-  return ConnectTo(options.server, options).status();
+  if (!IsSocket(options.server) || !HasSecurityFlags(options)) return absl::OkStatus();
+  const absl::Status fits = CheckSecurity(options.security, options.server);
+  return fits.ok() ? fits : absl::Status(fits.code(), absl::StrCat("--server: ", fits.message()));
 }
 
 // An error without a reason is an error of the connection; the server's errors have a reason.

@@ -27,7 +27,8 @@ struct Connection {
   ChannelSecurity security;  // of the channel
 };
 
-// Checks the flags of the server and of its security without a call, as WithServer does.
+// INVALID_ARGUMENT if flags of TLS or of a token are given for a server that does not use them: the
+// private server, or one at a Unix socket. Opens no file and makes no call.
 absl::Status CheckServerFlags(const Options& options);
 
 // Adds the server's address to an error of the connection. Does not change the server's own errors.

@@ -197,7 +197,7 @@ absl::Status CheckSave(const Options& options) {
   const std::filesystem::file_status found = std::filesystem::status(options.save, error);
   if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found)) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--save: ", options.save, " is not a regular file, as .npz needs it"));
+        absl::StrCat("--save: ", options.save, " is not a regular file; .npz needs one"));
   }
   return CheckPythonFor("--save " + options.save);
 }

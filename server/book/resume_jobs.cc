@@ -38,8 +38,10 @@ void ReadShortfall(Database& database, const JobRecord& record, const EnsembleSp
   if (!spec.target.tolerance) return;
   ReadResults(database, record.sequence, 0, Details::kLeftOut, [&](const PointRow& row) {
     const v1::PointResult result = database.ValueOf(ResultFromBytes(row.result));
-    // A model that needs no samples gives its estimates, a billiard without samples gives none.
-    if (row.samples == 0 && !result.estimates().empty()) return true;
+    // Closed forms and the spectrum take no samples. A billiard may end without one that counts.
+    const bool takes_samples = result.model() != v1::EnsembleSpec::CLOSED_FORM &&
+                               result.model() != v1::EnsembleSpec::SPECTRUM;
+    if (!takes_samples) return true;
     const Estimate reached = FirstEstimateOf(result);
     if (RelativeError(reached) <= *spec.target.tolerance) return true;
     const auto point = static_cast<size_t>(row.point);

@@ -54,7 +54,7 @@ absl::Status MakeFolder(const std::string& path) {
 absl::StatusOr<std::string> BytesOf(const std::string& path) {
   const std::ifstream file(path, std::ios::binary);
   std::ostringstream bytes;
-  bytes << file.rdbuf();  // fails if nothing is read, for instance from a folder
+  bytes << file.rdbuf();  // fails if the file is empty or cannot be read, such as a folder
   if (!bytes) return absl::NotFoundError(absl::StrCat(path, " cannot be read"));
   return std::move(bytes).str();
 }

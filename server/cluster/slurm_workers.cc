@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <span>
 #include <utility>
 
@@ -223,6 +224,7 @@ void SlurmWorkers::Look() {
   const bool is_idle = !has_work && !may_have_workers_ && backoff_.count() == 0;
   if (now < next_query_ || is_idle) return;
   absl::Status steered;
+  // An exception that left this thread would end the server.
   try {
     steered = Steer(work);
   } catch (const std::exception& error) {

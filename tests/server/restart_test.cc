@@ -59,16 +59,16 @@ std::string LeaveUnfinished(const TemporaryFolder& folder,
   return name;
 }
 
-// Both points miss it. The error names the first one, which had ended before the restart, also if
-// its samples were too few for an estimate.
+// Both points miss the tolerance. The error names the first point, which ended before the restart,
+// even if it has too few samples for an estimate.
 TEST(Restart, AMissedToleranceIsRemembered) {
   v1::EnsembleSpec spec = Equilibrium(2, 50);
-  spec.mutable_target()->set_tolerance(1e-6);
-  for (const char* damage : {"SELECT 0", "UPDATE results SET samples = 0, result = x''"}) {
-    SCOPED_TRACE(damage);
+  spec.mutable_target()->set_tolerance(1e-6);  // replaces the number of collisions
+  for (const char* change : {"SELECT 0", "UPDATE results SET samples = 0, result = x''"}) {
+    SCOPED_TRACE(change);
     const TemporaryFolder folder;
     const std::string name = LeaveUnfinished(folder, spec);
-    ChangeStore(folder.File("store.sqlite3"), damage);
+    ChangeStore(folder.File("store.sqlite3"), change);
     RunningServer server({.data_dir = folder.path()});
     const EnsembleJob job = server.AwaitEnd(name);
     EXPECT_THAT(job.error().message(), HasSubstr("point 0"));

@@ -238,7 +238,7 @@ class Job:
 
     def _repr_html_(self) -> str:
         request = ensemble_pb2.GetEnsembleJobRequest(name=self.name)
-        with suppress(Error, ValueError):  # no answer at once, or the connection is closed
+        with suppress(Error, ValueError):  # the server does not answer, or the connection is closed
             self.message = self._connection.call_once(request, _GLANCE_SECONDS)
         progress = self.message.progress
         facts = {

@@ -28,12 +28,14 @@ _MOST_ROWS = 20
 
 
 def _shown_once(read: Callable[[Any], Value], doc: str) -> Value:
-    """A property of a Result: what the function reads in its messages, once for each object."""
+    """A read-only property of a Result. The function reads the value in the messages, once for each
+    object."""
 
     def value(result: Result) -> Any:
-        if doc not in result._read:
-            result._read[doc] = read(result.messages)
-        return result._read[doc]
+        known = vars(result)
+        if doc not in known:
+            known[doc] = read(result.messages)
+        return known[doc]
 
     return property(value, doc=doc)  # type: ignore[return-value]
 
@@ -74,7 +76,6 @@ class Result:
     def __init__(self, job: Any, messages: Sequence[Any]) -> None:
         self.job = job
         self.messages = list(messages)
-        self._read: dict[str, Any] = {}
 
     def __len__(self) -> int:
         return len(self.messages)

@@ -291,7 +291,7 @@
       this.showNumbers();
     }
 
-    // Keeps the zoom, unless it has no data any more.
+    // Keeps the zoom if its range still overlaps the data.
     replace(data) {
       const {min, max} = this.uplot.scales.x;
       const hasData = max >= data[0][0] && min <= data[0].at(-1);
@@ -386,7 +386,7 @@
       if (this.details.open) this.numbers.replaceChildren(tableOf(this.chart));
     }
 
-    // Keeps the zoom.
+    // Draws the chart anew with the same zoom. A chart that is hidden loses its zoom.
     repaint() {
       const {min, max} = this.uplot?.scales.x ?? {};
       const isZoomed = this.uplot && isSelected(this.uplot.data[0], min, max);

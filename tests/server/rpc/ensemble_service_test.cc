@@ -36,7 +36,7 @@ TEST(EnsembleService, AnUpdateSetsTheFieldsOfItsMask) {
 
 // ---- List ----
 
-TEST(EnsembleService, AListByLabelsHasTheJobsWithAllOfThem) {
+TEST(EnsembleService, AListByLabelsHasOnlyJobsWithAllTheseLabels) {
   RunningServer server;
   auto update = FromText<v1::UpdateEnsembleJobRequest>(
       "job { labels { key: 'a' value: '1' } labels { key: 'b' value: '2' } } "
