@@ -44,10 +44,11 @@ std::string Script(const std::string& path, const std::string& script) {
 // A fake server as a shell script; $2 is its data folder. The server takes the lock, writes its
 // process id into the lock file and writes its address. It ends at SIGTERM, or when the test's
 // folder is removed, or with the test. FindServer holds a free lock for a moment, so the script
-// waits for the lock.
+// waits for the lock. `sleep` runs in a subshell: a shell moves its own descriptor 9 while it
+// starts a command without it, and FindServer could miss the descriptor.
 constexpr char kLock[] = "exec 9>>$2/lock; flock 9; echo $$ >$2/lock\n";
 constexpr char kListen[] = "echo unix:$2/socket >$2/server.address\n";
-constexpr char kWait[] = "while [ -d $2 ] && kill -0 $PPID; do sleep 0.01 9>&-; done\n";
+constexpr char kWait[] = "while [ -d $2 ] && kill -0 $PPID; do (exec sleep 0.01 9>&-); done\n";
 
 class ServerProcessTest : public ::testing::Test {
  protected:
@@ -282,8 +283,8 @@ TEST_F(LocalServerTest, StartsAServerWhenAnotherLeavesTheFolder) {
   LocalServer server = Server(
       absl::StrCat("cd \"${0%/*}\"; if [ -e once ]; then exec 9>>lock; flock 9; echo $$ >lock; ",
                    "echo unix:", second.SocketPath(), " >server.address; touch twice; ",
-                   "while [ -e once ] && kill -0 $PPID; do sleep 0.01 9>&-; done; exit 1; fi; ",
-                   "touch once; exit 1"),
+                   "while [ -e once ] && kill -0 $PPID; do (exec sleep 0.01 9>&-); done; ",
+                   "exit 1; fi; touch once; exit 1"),
       absl::FromChrono(kPatience));
   server.socket = second.SocketPath();
   std::jthread starter([&](const std::stop_token& stop) {
