@@ -50,6 +50,8 @@ TEST(GasConduction, EstimatesAndProfileFollowFromTheCurrent) {
         GasGeometry::Create(kPaperRho, 0.2, shape, GasEnds::kReservoirs).value();
     EXPECT_DOUBLE_EQ(summary.estimates[2].value,
                      conductivity.value / (InfiniteGasExchangeRate(geometry, 2) / 2));
+    // The ratio is near 1, as where exchanges are rare. Its standard error is 0.07 and 0.05.
+    EXPECT_NEAR(summary.estimates[2].value, 1, 0.25);
     EXPECT_FALSE(current.exact);
     EXPECT_GT(current.value, 10 * *current.standard_error);  // from hot to cold
     EXPECT_TRUE(summary.remarks.empty());
