@@ -68,9 +68,9 @@ absl::string_view FlagOf(absl::string_view error) {
   return absl::StartsWith(error, "the authority file ") ? "--ca" : "--server";
 }
 
+// `options` must have passed CheckServerFlags.
 absl::StatusOr<Connection> ConnectTo(const std::string& address, const Options& options) {
-  const bool none = IsSocket(address) && !HasSecurityFlags(options);
-  const ChannelSecurity security = none ? ChannelSecurity() : options.security;
+  const ChannelSecurity security = IsSocket(address) ? ChannelSecurity() : options.security;
   auto channel = OpenChannel(address, security);
   if (!channel.ok()) {
     return absl::Status(channel.status().code(), absl::StrCat(FlagOf(channel.status().message()),
@@ -107,16 +107,9 @@ absl::StatusOr<Connection> ConnectPrivately(bool may_start) {
                     .security = {}};
 }
 
-absl::Status CheckFlagsOfPrivateServer(const Options& options) {
-  if (!HasSecurityFlags(options)) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      "the private server uses neither TLS nor a token; name another server with --server");
-}
-
 absl::StatusOr<Connection> Connect(const Options& options, bool may_start) {
-  if (!options.server.empty()) return ConnectTo(options.server, options);
-  const absl::Status bad = CheckFlagsOfPrivateServer(options);
-  return bad.ok() ? ConnectPrivately(may_start) : bad;
+  if (absl::Status bad = CheckServerFlags(options); !bad.ok()) return bad;
+  return options.server.empty() ? ConnectPrivately(may_start) : ConnectTo(options.server, options);
 }
 
 // ---- jobs ----
@@ -165,8 +158,12 @@ std::string ConnectionHint(const std::string& address, const ChannelSecurity& se
 }
 
 absl::Status CheckServerFlags(const Options& options) {
-  if (options.server.empty()) return CheckFlagsOfPrivateServer(options);
-  if (!IsSocket(options.server) || !HasSecurityFlags(options)) return absl::OkStatus();
+  if (!HasSecurityFlags(options)) return absl::OkStatus();
+  if (options.server.empty()) {
+    return absl::InvalidArgumentError(
+        "the private server uses neither TLS nor a token; name another server with --server");
+  }
+  if (!IsSocket(options.server)) return absl::OkStatus();
   const absl::Status fits = CheckSecurity(options.security, options.server);
   return fits.ok() ? fits : absl::Status(fits.code(), absl::StrCat("--server: ", fits.message()));
 }

@@ -199,11 +199,9 @@ VerbResult Figure(const Options& options, Terminal& terminal) {
   }
   const auto words = FigureWords(options.words);
   if (!words.ok()) return words.status();
-  absl::Status bad = CheckServerFlags(options);
-  if (bad.ok()) {
-    bad = CheckPython("figure", {"ballpiston", "matplotlib"},
-                      "python3-ballpiston and python3-matplotlib");
-  }
+  if (absl::Status bad = CheckServerFlags(options); !bad.ok()) return bad;
+  absl::Status bad = CheckPython("figure", {"ballpiston", "matplotlib"},
+                                 "python3-ballpiston and python3-matplotlib");
   if (!bad.ok()) return bad;
   return RunPythonProgram("ballpiston.figures", *words, options, terminal);
 }
